@@ -1,0 +1,33 @@
+// The geometry that hierarchies are built on: welded positions and sound triangles.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace goldthread {
+
+/// Triangles that were left out of a TriangleMesh, by reason.
+struct SkippedTriangles {
+  uint64_t not_finite = 0;  ///< a corner is NaN or infinite
+  uint64_t degenerate = 0;  ///< no area: corners coincide or lie on a line
+};
+
+/// Positions merged where equal (glTF splits vertices at every normal and UV seam; light must not see that), and the
+/// triangles over them. Mesh space.
+struct TriangleMesh {
+  std::vector<vec3> positions;
+  std::vector<UVec3> triangles;            ///< corners as indices into positions, in the source's order and winding
+  std::vector<uint32_t> source_triangles;  ///< per triangle: its number in the source primitive
+  SkippedTriangles skipped;
+};
+
+/// Welds bit-equal positions (-0 equals 0) and drops triangles without area. `indices` must be in range.
+/// Corner k of a kept triangle is corner k of its source triangle.
+TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices);
+
+/// Twice-area vector's half: the normal of a triangle times its area.
+inline vec3 area_vector(const vec3& a, const vec3& b, const vec3& c) { return 0.5f * cross(b - a, c - a); }
+
+}  // namespace goldthread

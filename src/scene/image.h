@@ -1,0 +1,46 @@
+// A picture in memory, and how a texture looks one up.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace goldthread {
+
+/// Decoded texture: 8-bit RGBA, rows from the top, as glTF stores them. Colour channels are sRGB-encoded.
+struct Image {
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> rgba;  ///< width * height * 4
+  std::string name;
+
+  bool empty() const { return rgba.empty(); }
+};
+
+/// Floating-point picture, scene-linear RGB, rows from the top.
+struct FloatImage {
+  uint32_t width = 0, height = 0;
+  std::vector<vec3> pixels;  ///< width * height
+};
+
+enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
+
+/// A use of an image by a material: which, where on the mesh, how placed (KHR_texture_transform).
+struct Texture {
+  int32_t image = -1;  ///< index in Scene::images, -1 for none
+  uint8_t texcoord = 0;
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  vec2 offset{0}, scale{1};
+  float rotation = 0;  ///< radians, counter-clockwise, as KHR_texture_transform
+
+  bool present() const { return image >= 0; }
+};
+
+/// Bilinear lookup. `uv` before the texture transform. Colour is returned linear, alpha as stored, in 0..1.
+/// An absent or empty image gives white.
+vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
+
+/// The same without the sRGB decoding, for data textures (metallic, roughness).
+vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
+
+}  // namespace goldthread

@@ -1,0 +1,59 @@
+// Everything that asks "what does this ray meet" asks here. Embree 3 or 4 behind it.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "math/vec.h"
+
+namespace goldthread {
+
+struct Ray {
+  vec3 origin{0};
+  vec3 direction{0};  ///< need not be unit: distances are in its lengths
+  float near = 0, far = std::numeric_limits<float>::infinity();
+};
+
+struct Hit {
+  static constexpr uint32_t kMiss = 0xffffffffu;
+  uint32_t triangle = kMiss;  ///< index in the triangles given
+  float distance = 0;
+  vec2 weights{0};            ///< barycentric weights of corners 1 and 2
+  vec3 normal{0};             ///< geometric, not unit, by the winding
+
+  bool missed() const { return triangle == kMiss; }
+};
+
+/// Decides whether a ray passes through `triangle` at barycentric `weights` (alpha mask and blend). Called from many
+/// threads at once; must be a pure function of its arguments.
+using PassThrough = std::function<bool(uint32_t triangle, vec2 weights, const Ray& ray)>;
+
+/// A static soup of world-space triangles. Thread safe once built.
+class RayCaster {
+ public:
+  /// `see_through` marks, per triangle, those for which `pass` is asked; both may be empty. The arrays are copied into
+  /// Embree's own buffers and may be dropped afterwards.
+  RayCaster(std::span<const vec3> positions, std::span<const UVec3> triangles,
+            std::span<const uint8_t> see_through = {}, PassThrough pass = {});
+  ~RayCaster();
+  RayCaster(RayCaster&&) noexcept;
+  RayCaster& operator=(RayCaster&&) noexcept;
+
+  /// The nearest hit.
+  Hit closest(const Ray& ray) const;
+  /// Whether anything lies between near and far.
+  bool occluded(const Ray& ray) const;
+  /// `occluded` for up to 16 rays at once, as a packet: bit i is set where ray i is blocked.
+  uint32_t occluded_packet(std::span<const Ray> rays) const;
+
+  uint64_t memory_bytes() const;  ///< what Embree has allocated for this scene
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace goldthread

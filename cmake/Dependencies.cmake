@@ -14,7 +14,7 @@ find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
-find_package(OpenEXR REQUIRED)
+
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PkgConfig REQUIRED)
@@ -32,6 +32,8 @@ target_compile_definitions(goldthread_embree INTERFACE GOLDTHREAD_EMBREE=${embre
 
 pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 add_library(goldthread::webp ALIAS PkgConfig::WEBP)
+pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)  # its CMake file names parts that Debian packs apart
+add_library(goldthread::openexr ALIAS PkgConfig::OPENEXR)
 pkg_check_modules(SQLITE3 REQUIRED IMPORTED_TARGET sqlite3)
 add_library(goldthread::sqlite3 ALIAS PkgConfig::SQLITE3)
 

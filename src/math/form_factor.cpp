@@ -72,7 +72,7 @@ vec3 sky_form_factor(const vec3& n, std::span<const vec3> directions) {
   std::array<vec3, kMaxPolygon + 1> clipped;
   const size_t kept = clip_to_horizon(n, directions, clipped);
   if (kept < 3) return vec3(0);
-  const vec3 m = contour_sum({clipped.data(), kept});
+  const vec3 m = -contour_sum({clipped.data(), kept});
   return dot(m, n) > 0 ? m : vec3(0);
 }
 

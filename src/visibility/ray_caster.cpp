@@ -1,7 +1,5 @@
 #include "visibility/ray_caster.h"
 
-#include <tbb/tbb_config.h>
-
 #if GOLDTHREAD_EMBREE >= 4
 #include <embree4/rtcore.h>
 #else

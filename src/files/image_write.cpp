@@ -1,0 +1,82 @@
+#include "files/image_write.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <vector>
+
+#include "base/parallel.h"
+#include "files/atomic_file.h"
+#include "files/png_encode.h"
+#include "math/colour.h"
+
+namespace goldthread {
+namespace {
+
+Error not_a_picture(const std::string& file) {
+  return {ErrorCode::kCannotWrite, "the picture has no pixels, or more than the format can hold", file, "",
+          "choose another width and height"};
+}
+
+bool consistent(const FloatImage& image) {
+  return image.width > 0 && image.height > 0 && image.pixels.size() == size_t{image.width} * image.height;
+}
+
+/// NaN becomes black: a broken pixel must not turn into whatever the conversion happens to give.
+uint8_t to_byte(float linear) {
+  return std::isnan(linear) ? uint8_t{0} : static_cast<uint8_t>(std::lround(255 * linear_to_srgb(linear)));
+}
+
+/// The EXR file in memory, so that disk trouble is AtomicFile's to report.
+std::string encode_exr(const FloatImage& image) {
+  Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer frame;
+  const char* names[3] = {"R", "G", "B"};
+  auto* base = reinterpret_cast<char*>(const_cast<vec3*>(image.pixels.data()));  // Imf reads only
+  for (size_t channel = 0; channel < 3; ++channel) {
+    header.channels().insert(names[channel], Imf::Channel(Imf::FLOAT));
+    frame.insert(names[channel], Imf::Slice(Imf::FLOAT, base + channel * sizeof(float), sizeof(vec3),
+                                            sizeof(vec3) * image.width));
+  }
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile output(stream, header);
+    output.setFrameBuffer(frame);
+    output.writePixels(static_cast<int>(image.height));
+  }
+  return stream.str();
+}
+
+}  // namespace
+
+Status write_png(const std::string& file, const FloatImage& image) {
+  if (!consistent(image)) return not_a_picture(file);
+  std::vector<uint8_t> pixels(image.pixels.size() * 3);
+  parallel_for(image.height, [&](size_t row) {
+    for (size_t i = row * image.width; i < (row + 1) * image.width; ++i)
+      for (int c = 0; c < 3; ++c) pixels[3 * i + static_cast<size_t>(c)] = to_byte(image.pixels[i][c]);
+  });
+  const std::vector<uint8_t> bytes = encode_png(image.width, image.height, 3, pixels);
+  if (bytes.empty()) return not_a_picture(file);
+  return write_file_atomically(file, bytes);
+}
+
+Status write_exr(const std::string& file, const FloatImage& image) {
+  constexpr uint32_t kLargest = 1u << 30;  // Imf counts in int
+  if (!consistent(image) || image.width > kLargest || image.height > kLargest) return not_a_picture(file);
+  try {
+    const std::string bytes = encode_exr(image);
+    return write_file_atomically(file, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kCannotWrite, std::string("OpenEXR: ") + failure.what(), file, "", ""};
+  }
+}
+
+}  // namespace goldthread

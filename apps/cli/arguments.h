@@ -1,0 +1,36 @@
+// From the command line to a command (docs of the contract: README.md, "Command line").
+#pragma once
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "goldthread/bake.h"
+
+namespace goldthread::cli {
+
+struct MakeCommand {
+  MakeOptions options;
+  bool quiet = false;
+};
+
+struct InfoCommand {
+  std::string input;
+  std::string json_file;  ///< "-" for standard output, empty for lines for a person
+};
+
+struct BakeCommand {
+  BakeOptions options;
+  bool quiet = false;
+};
+
+/// Something to print and be done: help or the version.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, ShowText>;
+
+/// `arguments` without the program's name. Wrong usage is an Error with code kUsage.
+Result<Command> parse_arguments(std::vector<std::string> arguments);
+
+}  // namespace goldthread::cli

@@ -1,0 +1,90 @@
+// The program `goldthread`: parse, call, print.
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+
+#include "arguments.h"
+#include "goldthread/bake.h"
+#include "interrupt.h"
+#include "progress_line.h"
+#include "text_file.h"
+
+namespace goldthread::cli {
+namespace {
+
+int fail(const Error& error) {
+  fmt::print(stderr, "goldthread: {}\n", error.line());
+  return static_cast<int>(error.code);
+}
+
+/// Prints what was asked for; exit code 0 unless standard output is broken.
+int print_out(const std::string& text) {
+  const Status status = write_text("-", text);
+  return status ? 0 : fail(status.error());
+}
+
+int run(const ShowText& command) {
+  return print_out(command.text);
+}
+
+int run(const MakeCommand& command) {
+  const Result<uint64_t> triangles = make_scene(command.options);
+  if (!triangles) return fail(triangles.error());
+  if (command.quiet) return 0;
+  return print_out(fmt::format("wrote {}: {} triangles\n", command.options.output, *triangles));
+}
+
+int run(const InfoCommand& command) {
+  const Result<SceneInfo> info = inspect(command.input);
+  if (!info) return fail(info.error());
+  if (command.json_file.empty()) return print_out(info->text);
+  const Status status = write_text(command.json_file, info->json + "\n");
+  return status ? 0 : fail(status.error());
+}
+
+std::string bake_lines(const BakeResult& result) {
+  std::string text = result.summary + "\n";
+  for (const std::string& file : result.written) text += "wrote " + file + "\n";
+  return text;
+}
+
+int run(const BakeCommand& command) {
+  catch_interrupts();
+  ProgressLine progress(command.quiet);
+  BakeListener listener;
+  listener.on_progress = [&](const BakeEvent& event) { progress.show(event); };
+  listener.cancelled = interrupted;
+  const Result<BakeResult> result = bake(command.options, listener);
+  progress.clear();
+  if (!result) return fail(result.error());
+  int code = 0;
+  if (!command.quiet) {
+    for (const std::string& warning : result->warnings)
+      fmt::print(stderr, "goldthread: warning: {}\n", warning);
+    code = print_out(bake_lines(*result));
+  }
+  return result->cancelled ? static_cast<int>(ErrorCode::kCancelled) : code;
+}
+
+int run_program(int count, char** values) {
+  const Result<Command> command = parse_arguments(std::vector<std::string>(values + (count > 0), values + count));
+  if (!command) return fail(command.error());
+  return std::visit([](const auto& verb) { return run(verb); }, *command);
+}
+
+}  // namespace
+}  // namespace goldthread::cli
+
+int main(int count, char** values) {
+  using goldthread::Error;
+  using goldthread::ErrorCode;
+  try {
+    return goldthread::cli::run_program(count, values);
+  } catch (const std::bad_alloc&) {
+    return goldthread::cli::fail(
+        Error{ErrorCode::kLimit, "out of memory", "", "", "free some, or lower --quality or --max-memory"});
+  } catch (const std::exception& error) {  // a library's surprise: still one line and no crash
+    return goldthread::cli::fail(Error{ErrorCode::kBadInput, error.what(), "", "", ""});
+  }
+}

@@ -1,0 +1,181 @@
+// Welding by partitioned hashing: positions are dealt into buckets by the high bits of their hash, and each
+// bucket finds its duplicates alone, in index order. So the lowest index of equal positions always stands for
+// all of them, whatever the number of threads.
+#include <bit>
+#include <cstring>
+
+#include "base/parallel.h"
+#include "mesh/triangle_mesh.h"
+
+namespace goldthread {
+namespace {
+
+constexpr uint32_t kNone = 0xffffffffu;
+constexpr size_t kBlock = 32768;  ///< positions or triangles a task
+constexpr uint32_t kBucketBits = 8, kBuckets = 1u << kBucketBits;
+
+struct PositionBits {
+  uint32_t x, y, z;
+  bool operator==(const PositionBits&) const = default;
+};
+
+PositionBits bits_of(const vec3& p) {
+  // Adding +0 turns -0 into +0 and changes nothing else.
+  return {std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
+          std::bit_cast<uint32_t>(p.z + 0.0f)};
+}
+
+uint32_t hash_of(const PositionBits& b) {
+  uint64_t h = (uint64_t(b.x) << 32 | b.y) * 0x9e3779b97f4a7c15ull;
+  h = (h ^ (h >> 29) ^ b.z) * 0xbf58476d1ce4e5b9ull;
+  h = (h ^ (h >> 32)) * 0x94d049bb133111ebull;
+  return uint32_t(h >> 32);
+}
+
+size_t block_count(size_t n) {
+  return (n + kBlock - 1) / kBlock;
+}
+
+/// Calls body(block, begin, end) over blocks of [0, n).
+template <typename Body>
+void for_blocks(size_t n, const Body& body) {
+  parallel_for(block_count(n),
+               [&](size_t block) { body(block, block * kBlock, std::min(n, (block + 1) * kBlock)); });
+}
+
+/// Index numbers dealt into buckets by hash, ascending within each.
+struct Buckets {
+  std::vector<uint32_t> begin;  ///< kBuckets + 1
+  std::vector<uint32_t> members;
+};
+
+Buckets deal(std::span<const vec3> positions) {
+  const size_t blocks = block_count(positions.size());
+  std::vector<std::array<uint32_t, kBuckets>> place(blocks);
+  const auto bucket_of = [&](size_t i) { return hash_of(bits_of(positions[i])) >> (32 - kBucketBits); };
+  for_blocks(positions.size(), [&](size_t block, size_t first, size_t last) {
+    place[block].fill(0);
+    for (size_t i = first; i < last; ++i) ++place[block][bucket_of(i)];
+  });
+  Buckets buckets{std::vector<uint32_t>(kBuckets + 1), std::vector<uint32_t>(positions.size())};
+  uint32_t total = 0;
+  for (uint32_t b = 0; b < kBuckets; ++b) {
+    buckets.begin[b] = total;
+    for (auto& counts : place) total += std::exchange(counts[b], total);
+  }
+  buckets.begin[kBuckets] = total;
+  for_blocks(positions.size(), [&](size_t block, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) buckets.members[place[block][bucket_of(i)]++] = uint32_t(i);
+  });
+  return buckets;
+}
+
+/// Open addressing over one bucket; `first_equal` gets the lowest equal index of each member.
+void find_equal(std::span<const vec3> positions, std::span<const uint32_t> members,
+                std::span<uint32_t> first_equal) {
+  if (members.empty()) return;
+  const size_t capacity = std::bit_ceil(members.size() * 2);
+  std::vector<uint32_t> table(capacity, kNone);
+  for (const uint32_t i : members) {
+    const PositionBits bits = bits_of(positions[i]);
+    size_t slot = hash_of(bits) & (capacity - 1);
+    while (table[slot] != kNone && bits_of(positions[table[slot]]) != bits)
+      slot = (slot + 1) & (capacity - 1);
+    if (table[slot] == kNone) table[slot] = i;
+    first_equal[i] = table[slot];
+  }
+}
+
+std::vector<uint32_t> find_equal_positions(std::span<const vec3> positions) {
+  std::vector<uint32_t> first_equal(positions.size());
+  const Buckets buckets = deal(positions);
+  parallel_for(kBuckets, [&](size_t b) {
+    find_equal(positions,
+               std::span(buckets.members).subspan(buckets.begin[b], buckets.begin[b + 1] - buckets.begin[b]),
+               first_equal);
+  });
+  return first_equal;
+}
+
+enum class Soundness : uint8_t { sound, not_finite, degenerate };
+
+/// A triangle lower than the rounding of its own coordinates has no normal worth the name: it counts as a
+/// line.
+Soundness judge(const vec3& a, const vec3& b, const vec3& c) {
+  if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return Soundness::not_finite;
+  const dvec3 u = dvec3(b) - dvec3(a), v = dvec3(c) - dvec3(a);
+  const double longest = std::sqrt(std::max({dot(u, u), dot(v, v), dot(u - v, u - v)}));
+  const vec3 magnitude = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+  const double rounding = 0x1p-23 * double(std::max({magnitude.x, magnitude.y, magnitude.z}));
+  if (!(length(cross(u, v)) > rounding * longest)) return Soundness::degenerate;
+  const vec3 area = area_vector(a, b, c);
+  if (!is_finite(area)) return Soundness::not_finite;  // so large that its area overflows
+  return area == vec3(0) ? Soundness::degenerate : Soundness::sound;
+}
+
+std::vector<Soundness> judge_all(std::span<const vec3> positions, std::span<const uint32_t> indices,
+                                 std::span<const uint32_t> first_equal) {
+  std::vector<Soundness> result(indices.size() / 3);
+  for_blocks(result.size(), [&](size_t, size_t first, size_t last) {
+    for (size_t t = first; t < last; ++t) {
+      const uint32_t i = first_equal[indices[3 * t]], j = first_equal[indices[3 * t + 1]],
+                     k = first_equal[indices[3 * t + 2]];
+      result[t] = judge(positions[i], positions[j], positions[k]);
+    }
+  });
+  return result;
+}
+
+/// Copies the sound triangles, still over source positions' lowest equal index.
+void keep_sound(TriangleMesh& mesh, std::span<const uint32_t> indices, std::span<const uint32_t> first_equal,
+                std::span<const Soundness> soundness) {
+  std::vector<size_t> place(block_count(soundness.size()));
+  for_blocks(soundness.size(), [&](size_t block, size_t first, size_t last) {
+    place[block] = size_t(std::count(soundness.begin() + ptrdiff_t(first),
+                                     soundness.begin() + ptrdiff_t(last), Soundness::sound));
+  });
+  size_t total = 0;
+  for (size_t& p : place) total += std::exchange(p, total);
+  mesh.triangles.resize(total);
+  mesh.source_triangles.resize(total);
+  for_blocks(soundness.size(), [&](size_t block, size_t first, size_t last) {
+    size_t out = place[block];
+    for (size_t t = first; t < last; ++t) {
+      if (soundness[t] != Soundness::sound) continue;
+      for (int k = 0; k < 3; ++k) mesh.triangles[out][k] = first_equal[indices[3 * t + size_t(k)]];
+      mesh.source_triangles[out++] = uint32_t(t);
+    }
+  });
+}
+
+/// Keeps the positions that triangles use, in their source order, and renumbers.
+void keep_used_positions(TriangleMesh& mesh, std::span<const vec3> positions) {
+  std::vector<uint32_t> number(positions.size(), 0);
+  for (const UVec3& t : mesh.triangles) number[t.x] = number[t.y] = number[t.z] = 1;
+  uint32_t total = 0;
+  for (uint32_t& n : number) total += std::exchange(n, n ? total : kNone) != 0;
+  mesh.positions.resize(total);
+  for_blocks(positions.size(), [&](size_t, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i)
+      if (number[i] != kNone) mesh.positions[number[i]] = positions[i] + 0.0f;
+  });
+  for_blocks(mesh.triangles.size(), [&](size_t, size_t first, size_t last) {
+    for (size_t t = first; t < last; ++t)
+      for (int k = 0; k < 3; ++k) mesh.triangles[t][k] = number[mesh.triangles[t][k]];
+  });
+}
+
+}  // namespace
+
+TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices) {
+  TriangleMesh mesh;
+  const std::vector<uint32_t> first_equal = find_equal_positions(positions);
+  const std::vector<Soundness> soundness = judge_all(positions, indices, first_equal);
+  mesh.skipped.not_finite = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::not_finite));
+  mesh.skipped.degenerate = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::degenerate));
+  keep_sound(mesh, indices, first_equal, soundness);
+  keep_used_positions(mesh, positions);
+  return mesh;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,145 @@
+// The elements that exchange light: volume clusters, face clusters, triangles, patches and lights, in one array,
+// made on demand. This room alone knows the kinds; solvers see children, area, summed normal, samples.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "element/leaf_mesh.h"
+#include "element/surface_set.h"
+#include "math/form_factor.h"
+
+namespace goldthread {
+
+using ElementId = uint32_t;
+constexpr ElementId kNoElement = 0xffffffffu;
+
+enum class ElementKind : uint8_t {
+  kVolume,    ///< a box of surfaces
+  kCluster,   ///< a face cluster of at least two triangles
+  kTriangle,  ///< an input triangle
+  kPatch,     ///< a convex piece of one
+  kSky,       ///< a spherical triangle of directions
+  kPoint,     ///< a point or spot light
+  kSun,       ///< a directional light
+};
+
+/// One side of something that sends or receives light. World space.
+struct Element {
+  ElementKind kind = ElementKind::kVolume;
+  bool back = false;              ///< the other side of the source's winding
+  bool indivisible = false;       ///< has no children and will have none
+  uint8_t depth = 0;
+  ElementId parent = kNoElement;
+  ElementId first_child = kNoElement;  ///< the second follows it; kNoElement while there are none
+  uint32_t part = 0;              ///< SurfaceSet::parts, for surfaces
+  uint32_t shape = 0;             ///< ClusterRef, triangle, patch number, light number, by kind
+  uint32_t samples = 0;           ///< first of kStoredSamples in the pool, for kVolume and kCluster
+  vec3 centre{0};
+  float radius = 0;
+  vec3 summed_normal{0};          ///< S, m^2 (equation 4.9), on the side that this element is
+  float area = 0;                 ///< m^2
+  float cone_cosine = -1;         ///< normals lie within acos(this) of S
+  float coverage = 1;
+  vec3 reflectance{0};            ///< area average
+  vec3 exitance{0};               ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
+};
+
+/// A point on an element's real surface.
+struct SurfacePoint {
+  vec3 position{0};
+  vec3 normal{0};  ///< unit, on the element's side
+};
+
+constexpr uint32_t kStoredSamples = 16;
+
+/// Corners of a convex polygon, counter-clockwise from the side that it sends to.
+struct Polygon {
+  std::array<vec3, kMaxPolygon> corners;
+  size_t count = 0;
+  std::span<const vec3> span() const { return {corners.data(), count}; }
+};
+
+class ElementPool {
+ public:
+  /// Makes the volume clusters, the surfaces' roots and the lights of `set`, which must outlive the pool.
+  explicit ElementPool(const SurfaceSet& set);
+
+  const Element& operator[](ElementId id) const { return elements_[id]; }
+  size_t size() const { return elements_.size(); }
+  ElementId root() const { return root_; }                        ///< kNoElement when there is no surface
+  std::span<const ElementId> lights() const { return lights_; }   ///< sky octants, point, spot and directional lights
+  size_t volume_clusters() const { return volume_clusters_; }
+  const SurfaceSet& surfaces() const { return *set_; }
+
+  /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
+  void expand(std::span<const ElementId> ids);
+
+  /// Point i of up to kStoredSamples, spread evenly by area over the element's real triangles.
+  SurfacePoint sample(ElementId id, uint32_t i) const;
+  /// Any point: u selects by area, v moves within. For more samples than are stored.
+  SurfacePoint sample_at(ElementId id, float u, float v) const;
+  /// A direction within a sky element.
+  vec3 sky_direction(ElementId id, float u, float v) const;
+
+  /// Corners of a triangle or patch.
+  Polygon polygon(ElementId id) const;
+  /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
+  const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_[elements_[id].shape]; }
+  const Light& light(ElementId id) const { return set_->scene->lights[elements_[id].shape]; }
+
+  /// The leaf mesh of a part, or null when none of its triangles has been cut.
+  const LeafMesh* leaf_mesh(uint32_t part) const { return leaf_meshes_[part].get(); }
+  /// Per face of a part's leaf mesh (per triangle when it has none): the deepest element on each side that holds it.
+  std::vector<ElementId> leaf_elements(uint32_t part, bool back) const;
+
+  /// Roots of the surfaces, in SurfaceSet's order.
+  std::span<const ElementId> surface_roots() const { return surface_roots_; }
+  std::array<uint64_t, 4> count_by_kind() const;  ///< volume, face (clusters and triangles), patch, light
+  uint64_t memory_bytes() const;
+
+ private:
+  struct Patch {                    // a node below a triangle, shared by both sides of it
+    uint32_t part = 0, face = 0, triangle = 0;
+    uint32_t first_corner = 0, corners = 0;
+    uint32_t first_child = kNoElement;
+  };
+
+  void make_volumes();
+  void make_lights();
+  Element make_surface_element(const Surface& surface) const;
+  void fill_cluster(Element& element, ClusterRef ref) const;
+  void fill_triangle(Element& element, uint32_t triangle) const;
+  void fill_patch(Element& element, uint32_t patch) const;
+  void fill_paint(Element& element, uint32_t first, uint32_t count) const;
+  void fill_volume(ElementId id);
+  void fill_samples(ElementId id);
+  void fill_child(ElementId id);
+  bool prepare_children(ElementId id);
+  bool split_patch(uint32_t patch);
+  uint32_t patch_of_triangle(uint32_t part, uint32_t triangle);
+  void store_polygon(Patch& patch);
+  void expand_sky(ElementId id);
+  SurfacePoint sample_cluster(const Element& element, ClusterRef ref, float u, float v) const;
+  SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
+  SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
+  Polygon triangle_polygon(const Element& element, uint32_t triangle) const;
+  Polygon patch_polygon(const Element& element) const;
+
+  const SurfaceSet* set_;
+  std::vector<Element> elements_;
+  std::vector<SurfacePoint> samples_;
+  std::vector<ElementId> lights_, surface_roots_;
+  std::vector<std::array<vec3, 3>> sky_;
+  ElementId root_ = kNoElement;
+  size_t volume_clusters_ = 0;
+
+  std::vector<Patch> patches_;
+  std::vector<vec3> corners_;
+  std::vector<std::unique_ptr<LeafMesh>> leaf_meshes_;
+  std::vector<std::vector<uint32_t>> triangle_patches_;  // per part with a leaf mesh: root patch per triangle
+};
+
+}  // namespace goldthread

@@ -1,0 +1,293 @@
+// The geometry and paint of single elements, and points on them.
+#include <algorithm>
+
+#include "base/rng.h"
+#include "element/element_pool.h"
+
+namespace goldthread {
+namespace {
+
+// +1 when the element's side is the one from which the tree's corners run counter-clockwise.
+float orientation(const Part& part, const Element& element) { return element.back ? -part.winding : part.winding; }
+
+vec3 side_normal(const Part& part, const Element& element, const vec3& tree_area_vector) {
+  const vec3 front = part.area_map * tree_area_vector;
+  return element.back ? -front : front;
+}
+
+}  // namespace
+
+Element ElementPool::make_surface_element(const Surface& surface) const {
+  Element element;
+  element.part = surface.part;
+  element.back = surface.back;
+  element.shape = surface.root;
+  if (is_triangle(surface.root)) {
+    element.shape = triangle_of(surface.root);
+    fill_triangle(element, element.shape);
+  } else {
+    fill_cluster(element, surface.root);
+  }
+  return element;
+}
+
+void ElementPool::fill_cluster(Element& element, ClusterRef ref) const {
+  const Part& part = set_->parts[element.part];
+  const FaceCluster& node = set_->tree(part).nodes[ref];
+  element.kind = ElementKind::kCluster;
+  element.shape = ref;
+  element.summed_normal = side_normal(part, element, node.summed_normal);
+  element.area = node.area * part.scale * part.scale;
+  element.centre = vec3(part.to_world * vec4(node.centre, 1));
+  element.radius = node.radius * part.scale;
+  element.cone_cosine = node.cone_cosine;
+  fill_paint(element, node.first, node.count);
+}
+
+void ElementPool::fill_triangle(Element& element, uint32_t triangle) const {
+  const Part& part = set_->parts[element.part];
+  const UVec3& corner = set_->tree(part).mesh.triangles[triangle];
+  const vec3 &a = part.positions[corner.x], &b = part.positions[corner.y], &c = part.positions[corner.z];
+  element.kind = ElementKind::kTriangle;
+  element.shape = triangle;
+  element.summed_normal = orientation(part, element) * area_vector(a, b, c);
+  element.area = length(element.summed_normal);
+  element.centre = (a + b + c) / 3.0f;
+  element.radius = std::sqrt(std::max({dot(a - element.centre, a - element.centre), dot(b - element.centre, b - element.centre),
+                                       dot(c - element.centre, c - element.centre)}));
+  element.cone_cosine = 1;
+  fill_paint(element, triangle, 1);
+}
+
+void ElementPool::fill_paint(Element& element, uint32_t first, uint32_t count) const {
+  const Part& part = set_->parts[element.part];
+  element.reflectance = part.reflectance;
+  element.exitance = part.exitance;
+  element.coverage = part.coverage;
+  if (part.triangle_reflectance.empty()) return;
+  const TriangleMesh& mesh = set_->tree(part).mesh;
+  vec3 reflectance(0), exitance(0);
+  float coverage = 0, area = 0;
+  for (uint32_t t = first; t < first + count; ++t) {
+    const UVec3& c = mesh.triangles[t];
+    const float a = length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z]));
+    area += a;
+    reflectance += a * part.triangle_reflectance[t];
+    exitance += a * part.triangle_exitance[t];
+    coverage += a * part.triangle_coverage[t];
+  }
+  if (area <= 0) return;
+  element.reflectance = reflectance / area;
+  element.exitance = exitance / area;
+  element.coverage = coverage / area;
+}
+
+void ElementPool::fill_patch(Element& element, uint32_t number) const {
+  const Patch& patch = patches_[number];
+  element.kind = ElementKind::kPatch;
+  element.shape = number;
+  const std::span<const vec3> corners(&corners_[patch.first_corner], patch.corners);
+  vec3 sum(0), moment(0);
+  float total = 0;
+  const Part& part = set_->parts[element.part];
+  for (size_t i = 1; i + 1 < corners.size(); ++i) {
+    const vec3 piece = area_vector(corners[0], corners[i], corners[i + 1]);
+    const float area = length(piece);
+    sum += piece;
+    total += area;
+    moment += area * (corners[0] + corners[i] + corners[i + 1]) / 3.0f;
+  }
+  element.summed_normal = orientation(part, element) * sum;
+  element.area = length(sum);
+  element.centre = total > 0 ? moment / total : corners[0];
+  float squared = 0;
+  for (const vec3& c : corners) squared = std::max(squared, dot(c - element.centre, c - element.centre));
+  element.radius = std::sqrt(squared);
+  element.cone_cosine = 1;
+  fill_paint(element, patch.triangle, 1);
+  if (part.triangle_reflectance.empty()) return;
+  // Textured: the patch's own average, from points on it.
+  const UVec3& c = set_->tree(part).mesh.triangles[patch.triangle];
+  const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
+  const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2);
+  const float scale = 1 / std::max(dot(n, n), 1e-30f);
+  Paint paint{vec3(0), vec3(0), 0};
+  constexpr uint32_t kPoints = 16;
+  Polygon polygon;
+  polygon.count = patch.corners;
+  std::copy(corners.begin(), corners.end(), polygon.corners.begin());
+  for (uint32_t i = 0; i < kPoints; ++i) {
+    const UnitSquarePoint uv = r2_point(i, number);
+    const vec3 p = sample_polygon(polygon, vec3(0), uv.u, uv.v).position - a;
+    const vec2 weights = glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
+    const Paint one = paint_at(*set_, part, patch.triangle, weights);
+    paint.reflectance += one.reflectance / static_cast<float>(kPoints);
+    paint.exitance += one.exitance / static_cast<float>(kPoints);
+    paint.coverage += one.coverage / static_cast<float>(kPoints);
+  }
+  element.reflectance = paint.reflectance;
+  element.exitance = paint.exitance;
+  element.coverage = paint.coverage;
+}
+
+void ElementPool::fill_volume(ElementId id) {
+  Element& element = elements_[id];
+  const Element &a = elements_[element.first_child], &b = elements_[element.first_child + 1];
+  element.area = a.area + b.area;
+  const float share = element.area > 0 ? a.area / element.area : 0.5f;
+  element.centre = share * a.centre + (1 - share) * b.centre;
+  element.radius = std::max(length(a.centre - element.centre) + a.radius, length(b.centre - element.centre) + b.radius);
+  element.summed_normal = a.summed_normal + b.summed_normal;
+  element.cone_cosine = -1;
+  element.reflectance = share * a.reflectance + (1 - share) * b.reflectance;
+  element.exitance = share * a.exitance + (1 - share) * b.exitance;
+  element.coverage = share * a.coverage + (1 - share) * b.coverage;
+}
+
+void ElementPool::fill_child(ElementId id) {
+  Element& element = elements_[id];
+  switch (elements_[element.parent].kind) {
+    case ElementKind::kCluster:
+      if (is_triangle(element.shape)) {
+        fill_triangle(element, triangle_of(element.shape));
+      } else {
+        fill_cluster(element, element.shape);
+        fill_samples(id);
+      }
+      break;
+    case ElementKind::kTriangle:
+    case ElementKind::kPatch: fill_patch(element, element.shape); break;
+    default: break;
+  }
+}
+
+void ElementPool::fill_samples(ElementId id) {
+  const Element& element = elements_[id];
+  if (element.kind != ElementKind::kVolume && element.kind != ElementKind::kCluster) return;
+  for (uint32_t i = 0; i < kStoredSamples; ++i) {
+    const float jitter = unit_float(hash(id, i));
+    const float u = (static_cast<float>(i) + jitter) / static_cast<float>(kStoredSamples);
+    samples_[element.samples + i] = sample_at(id, u, unit_float(hash(id, i + 64)));
+  }
+}
+
+SurfacePoint ElementPool::sample(ElementId id, uint32_t i) const {
+  const Element& element = elements_[id];
+  if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster)
+    return samples_[element.samples + i % kStoredSamples];
+  const UnitSquarePoint p = r2_point(i, id);
+  return sample_at(id, p.u, p.v);
+}
+
+SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
+  // Down the volume clusters by area, each step rescaling u to the chosen child.
+  while (elements_[id].kind == ElementKind::kVolume) {
+    const ElementId child = elements_[id].first_child;
+    const float share = elements_[id].area > 0 ? elements_[child].area / elements_[id].area : 0.5f;
+    if (u < share || share >= 1) {
+      id = child;
+      u = std::min(u / std::max(share, 1e-20f), 0.99999994f);
+    } else {
+      id = child + 1;
+      u = std::min((u - share) / (1 - share), 0.99999994f);
+    }
+  }
+  const Element& element = elements_[id];
+  if (element.kind == ElementKind::kCluster) return sample_cluster(element, element.shape, u, v);
+  if (element.kind == ElementKind::kTriangle) return sample_triangle(element, element.shape, u, v);
+  return sample_polygon(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)), u, v);
+}
+
+SurfacePoint ElementPool::sample_cluster(const Element& element, ClusterRef ref, float u, float v) const {
+  const FaceClusterTree& tree = set_->tree(set_->parts[element.part]);
+  const auto area_of = [&](ClusterRef r) {
+    if (!is_triangle(r)) return tree.nodes[r].area;
+    const UVec3& c = tree.mesh.triangles[triangle_of(r)];
+    return length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z]));
+  };
+  while (!is_triangle(ref)) {
+    const FaceCluster& node = tree.nodes[ref];
+    const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
+    const bool left = u < share || share >= 1;
+    ref = node.child[left ? 0 : 1];
+    u = left ? u / std::max(share, 1e-20f) : (u - share) / (1 - share);
+    u = std::min(u, 0.99999994f);
+  }
+  return sample_triangle(element, triangle_of(ref), u, v);
+}
+
+SurfacePoint ElementPool::sample_triangle(const Element& element, uint32_t triangle, float u, float v) const {
+  const Polygon polygon = triangle_polygon(element, triangle);
+  const vec3 n = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
+  return sample_polygon(polygon, normalize_or(n, vec3(0, 1, 0)), u, v);
+}
+
+SurfacePoint ElementPool::sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const {
+  // A fan triangle by area, then a point in it by the square-root map.
+  const vec3& a = polygon.corners[0];
+  float total = 0;
+  std::array<float, kMaxPolygon> areas{};
+  for (size_t i = 1; i + 1 < polygon.count; ++i) {
+    areas[i] = length(cross(polygon.corners[i] - a, polygon.corners[i + 1] - a));
+    total += areas[i];
+  }
+  float target = u * total;
+  size_t i = 1;
+  while (i + 2 < polygon.count && target >= areas[i]) target -= areas[i++];
+  const float s = std::sqrt(std::clamp(areas[i] > 0 ? target / areas[i] : 0.5f, 0.0f, 1.0f));
+  const vec3 position = (1 - s) * a + s * ((1 - v) * polygon.corners[i] + v * polygon.corners[i + 1]);
+  return {position, normal};
+}
+
+Polygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {
+  const Part& part = set_->parts[element.part];
+  const UVec3& c = set_->tree(part).mesh.triangles[triangle];
+  Polygon polygon;
+  polygon.count = 3;
+  polygon.corners[0] = part.positions[c.x];
+  polygon.corners[1] = part.positions[c.y];
+  polygon.corners[2] = part.positions[c.z];
+  if (orientation(part, element) < 0) std::swap(polygon.corners[1], polygon.corners[2]);
+  return polygon;
+}
+
+Polygon ElementPool::patch_polygon(const Element& element) const {
+  const Patch& patch = patches_[element.shape];
+  Polygon polygon;
+  polygon.count = patch.corners;
+  std::copy_n(&corners_[patch.first_corner], patch.corners, polygon.corners.begin());
+  if (orientation(set_->parts[element.part], element) < 0)
+    std::reverse(polygon.corners.begin(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count));
+  return polygon;
+}
+
+Polygon ElementPool::polygon(ElementId id) const {
+  const Element& element = elements_[id];
+  return element.kind == ElementKind::kPatch ? patch_polygon(element) : triangle_polygon(element, element.shape);
+}
+
+void ElementPool::expand_sky(ElementId id) {
+  // The longest edge is halved, so that cells stay near equilateral.
+  const Element parent = elements_[id];
+  const std::array<vec3, 3> c = sky_[parent.shape];
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if (dot(c[k], c[(k + 1) % 3]) < dot(c[longest], c[(longest + 1) % 3])) longest = k;
+  const vec3 a = c[longest], b = c[(longest + 1) % 3], apex = c[(longest + 2) % 3];
+  const vec3 middle = normalize(a + b);
+  for (uint32_t k = 0; k < 2; ++k) {
+    Element& child = elements_[parent.first_child + k];
+    child.kind = ElementKind::kSky;
+    child.exitance = parent.exitance;
+    child.shape = static_cast<uint32_t>(sky_.size());
+    sky_.push_back(k == 0 ? std::array<vec3, 3>{a, middle, apex} : std::array<vec3, 3>{middle, b, apex});
+  }
+}
+
+vec3 ElementPool::sky_direction(ElementId id, float u, float v) const {
+  const std::array<vec3, 3>& c = sky_[elements_[id].shape];
+  const float s = std::sqrt(u);
+  return normalize((1 - s) * c[0] + s * ((1 - v) * c[1] + v * c[2]));
+}
+
+}  // namespace goldthread

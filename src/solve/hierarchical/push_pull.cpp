@@ -1,0 +1,142 @@
+#include "solve/hierarchical/push_pull.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+
+namespace goldthread {
+
+void RadiosityState::grow_to(const ElementPool& pool) {
+  const size_t before = radiosity.size(), count = pool.size();
+  radiosity.resize(count);
+  irradiance.resize(count, vec3(0));
+  low.resize(count);
+  high.resize(count);
+  vector.resize(count, mat3(0));
+  for (size_t i = before; i < count; ++i) {
+    const Element& e = pool[static_cast<ElementId>(i)];
+    if (e.parent != kNoElement) {
+      irradiance[i] = irradiance[e.parent];
+      vector[i] = vector[e.parent];
+    }
+    radiosity[i] = e.exitance + e.reflectance * irradiance[i];
+    low[i] = high[i] = largest(radiosity[i]);
+  }
+}
+
+namespace {
+
+// Irradiance vectors by octant of the direction they come from; a column a colour channel.
+struct Octants {
+  std::array<mat3, 8> sum{};
+  uint32_t used = 0;
+
+  void add(const vec3& transfer, const vec3& radiosity) {
+    const uint32_t octant = (transfer.x < 0 ? 1u : 0u) | (transfer.y < 0 ? 2u : 0u) | (transfer.z < 0 ? 4u : 0u);
+    if ((used >> octant & 1) == 0) sum[octant] = mat3(0);
+    used |= 1u << octant;
+    sum[octant][0] += transfer * radiosity.x;
+    sum[octant][1] += transfer * radiosity.y;
+    sum[octant][2] += transfer * radiosity.z;
+  }
+
+  // Irradiance on a plane of (not necessarily unit) normal `n`, each octant clipped by it.
+  vec3 on(const vec3& n) const {
+    vec3 e(0);
+    for (uint32_t o = 0; o < 8; ++o)
+      if ((used >> o & 1) != 0) e += glm::max(n * sum[o], vec3(0));
+    return e;
+  }
+
+  mat3 facing(const vec3& n) const {
+    mat3 total(0);
+    for (uint32_t o = 0; o < 8; ++o) {
+      if ((used >> o & 1) == 0) continue;
+      for (int c = 0; c < 3; ++c)
+        if (dot(sum[o][c], n) > 0) total[c] += sum[o][c];
+    }
+    return total;
+  }
+};
+
+struct Sweep {
+  const ElementPool& pool;
+  const LinkPool& links;
+  RadiosityState& state;
+  const std::vector<vec3>& old;  // radiosity before the sweep: the order of visits must not matter
+
+  // Returns the largest change of a leaf's reflected power below `id`.
+  float visit(ElementId id, const Octants& inherited) const {
+    Octants octants = inherited;
+    vec3 direct(0);
+    for (const Link& link : links.into(id)) {
+      if (link.mean <= 0) continue;
+      const vec3& b = old[link.source];
+      octants.add(link.transfer, b);
+      direct += link.mean * b;
+    }
+    const Element& e = pool[id];
+    if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct);
+    float left = 0, right = 0;
+    if (e.depth < 12) {
+      tbb::parallel_invoke([&] { left = visit(e.first_child, octants); },
+                           [&] { right = visit(e.first_child + 1, octants); });
+    } else {
+      left = visit(e.first_child, octants);
+      right = visit(e.first_child + 1, octants);
+    }
+    pull(id, e);
+    return std::max(left, right);
+  }
+
+  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct) const {
+    vec3 irradiance = direct;
+    if (e.kind == ElementKind::kCluster && e.cone_cosine < 0.95f) {
+      for (uint32_t i = 0; i < kStoredSamples; ++i)
+        irradiance += inherited.on(pool.sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
+    } else {
+      irradiance += inherited.on(e.summed_normal / std::max(e.area, 1e-30f));
+    }
+    const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
+    state.irradiance[id] = irradiance;
+    state.radiosity[id] = e.exitance + e.reflectance * irradiance;
+    state.low[id] = state.high[id] = largest(state.radiosity[id]);
+    state.vector[id] = all.facing(e.summed_normal);
+    return largest(change);
+  }
+
+  void pull(ElementId id, const Element& e) const {
+    const ElementId a = e.first_child, b = a + 1;
+    const float total = pool[a].area + pool[b].area;
+    const float share = total > 0 ? pool[a].area / total : 0.5f;
+    state.radiosity[id] = share * state.radiosity[a] + (1 - share) * state.radiosity[b];
+    state.irradiance[id] = share * state.irradiance[a] + (1 - share) * state.irradiance[b];
+    state.low[id] = std::min(state.low[a], state.low[b]);
+    state.high[id] = std::max(state.high[a], state.high[b]);
+  }
+};
+
+glm::dvec3 landing(const ElementPool& pool, const RadiosityState& state, ElementId id) {
+  const Element& e = pool[id];
+  if (e.first_child != kNoElement)
+    return landing(pool, state, e.first_child) + landing(pool, state, e.first_child + 1);
+  return glm::dvec3(state.irradiance[id]) * static_cast<double>(e.area * e.coverage);
+}
+
+}  // namespace
+
+double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state) {
+  if (pool.root() == kNoElement) return 0;
+  const std::vector<vec3> old = state.radiosity;
+  const Sweep sweep{pool, links, state, old};
+  const float change = sweep.visit(pool.root(), Octants{});
+  const vec3 all = landing_power(pool, state);
+  return static_cast<double>(change) / std::max(1e-30, static_cast<double>(largest(all)));
+}
+
+vec3 landing_power(const ElementPool& pool, const RadiosityState& state) {
+  return pool.root() == kNoElement ? vec3(0) : vec3(landing(pool, state, pool.root()));
+}
+
+}  // namespace goldthread

@@ -1,0 +1,200 @@
+#include "solve/hierarchical/refine.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
+
+namespace goldthread {
+namespace {
+
+enum class Decision : uint8_t { kKeep, kReceiver, kSource, kBoth };
+
+bool is_light(ElementKind kind) { return kind == ElementKind::kPoint || kind == ElementKind::kSun; }
+
+bool divisible(const Element& e) {
+  return e.first_child != kNoElement || (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
+}
+
+// Receivers above the triangle may always be opened; below, cuts make new geometry and stop at the least area.
+bool may_open_receiver(const Element& e, float least_area) {
+  if (!divisible(e)) return false;
+  if (e.kind == ElementKind::kVolume || e.first_child != kNoElement) return true;
+  return e.area > 2 * least_area;
+}
+
+bool may_open_source(const Element& e, float least_area) {
+  return may_open_receiver(e, e.kind == ElementKind::kSky ? 0.0f : least_area);
+}
+
+Decision decide(const ElementPool& pool, const RadiosityState& state, const Link& link, const RefineOptions& options) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  const bool self = link.receiver == link.source;
+  const LinkError error = estimate_error(pool, state, link);
+  if (error.total() <= options.power_error) return Decision::kKeep;
+  const bool receiver = may_open_receiver(r, options.least_area), source = may_open_source(s, options.least_area);
+  if (self) return receiver ? Decision::kBoth : Decision::kKeep;
+  if (!receiver && !source) return Decision::kKeep;
+  // A box knows too little of what is in it: open the larger of two that are still boxes, and boxes before the rest.
+  const bool r_box = r.kind == ElementKind::kVolume, s_box = s.kind == ElementKind::kVolume;
+  if (r_box != s_box) return r_box ? Decision::kReceiver : Decision::kSource;
+  if (r_box) return r.radius >= s.radius ? Decision::kReceiver : Decision::kSource;
+  if (error.receiver >= error.source)
+    return receiver ? Decision::kReceiver : (error.source > options.power_error ? Decision::kSource : Decision::kKeep);
+  return source ? Decision::kSource : (error.receiver > options.power_error ? Decision::kReceiver : Decision::kKeep);
+}
+
+struct Child {
+  ElementId receiver, source;
+};
+
+// How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may differ.
+void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& points, uint32_t& rays) {
+  const Element &r = pool[child.receiver], &s = pool[child.source];
+  points = r.cone_cosine < 0.9f || is_light(s.kind) ? 8 : 4;
+  rays = is_light(s.kind) ? 1 : r.kind == ElementKind::kVolume ? 2 : 4;
+}
+
+// Whether two elements can see each other at all, by their cones of normals: spares a sampling.
+bool faces_away(const Element& from, const Element& to) {
+  if (from.cone_cosine < 0.999f || to.kind == ElementKind::kSky || is_light(to.kind)) return false;
+  const vec3 n = normalize_or(from.summed_normal, vec3(0));
+  return dot(n, to.centre - from.centre) < -(to.radius + 1e-3f * from.radius);
+}
+
+bool hopeless(const ElementPool& pool, const Child& child) {
+  const Element &r = pool[child.receiver], &s = pool[child.source];
+  if (child.receiver == child.source) return r.cone_cosine > 0.9999f;
+  if (is_light(s.kind) || s.kind == ElementKind::kSky) return false;
+  return faces_away(r, s) || faces_away(s, r);
+}
+
+void list_children(const ElementPool& pool, const Link& link, Decision decision, std::vector<Child>& out) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  if (decision == Decision::kBoth) {
+    for (uint32_t i = 0; i < 4; ++i) out.push_back({r.first_child + (i & 1), r.first_child + (i >> 1)});
+  } else if (decision == Decision::kReceiver) {
+    for (uint32_t i = 0; i < 2; ++i) out.push_back({r.first_child + i, link.source});
+  } else if (decision == Decision::kSource) {
+    for (uint32_t i = 0; i < 2; ++i) out.push_back({link.receiver, s.first_child + i});
+  }
+}
+
+// Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes kKeep: its
+// link comes up again in the next wave with the other side.
+void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
+                   std::vector<Decision>& decisions, RadiosityState& state) {
+  std::vector<ElementId> wanted;
+  for (size_t i = 0; i < active.size(); ++i) {
+    const Link& link = links[active[i]];
+    if (decisions[i] == Decision::kReceiver || decisions[i] == Decision::kBoth) wanted.push_back(link.receiver);
+    if (decisions[i] == Decision::kSource) wanted.push_back(link.source);
+  }
+  std::erase_if(wanted, [&](ElementId id) { return pool[id].first_child != kNoElement; });
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  pool.expand(wanted);
+  state.grow_to(pool);
+}
+
+}  // namespace
+
+LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  const auto b = static_cast<double>(largest(state.radiosity[link.source]));
+  const auto area = static_cast<double>(r.area);
+  LinkError error;
+  if (b <= 0) return error;
+  const auto unoccluded = static_cast<double>(link.unoccluded);
+  if (r.kind == ElementKind::kVolume || s.kind == ElementKind::kVolume || link.receiver == link.source) {
+    // Boxes are guesses: all that they could bring counts as error; so does what a cluster sends to itself.
+    const double guess = s.kind == ElementKind::kVolume && link.receiver != link.source
+                             ? std::max(unoccluded, static_cast<double>(s.area) * 0.25 /
+                                                        (3.14 * std::max(1e-30, static_cast<double>(dot(s.centre - r.centre, s.centre - r.centre)))))
+                             : std::max(unoccluded, 0.25);
+    error.receiver = b * std::min(guess, is_light(s.kind) ? 1e30 : 1.0) * area;
+    return error;
+  }
+  const double v = link.visibility / 255.0;
+  // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
+  const double missed = unoccluded * (0.25 / (link.rays + 2.0));
+  error.receiver = b * area * (0.5 * static_cast<double>(link.spread) + missed);
+  const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
+  error.source = 0.25 * range * static_cast<double>(link.mean) * area;
+  if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)
+    error.source += b * area * unoccluded * v * (1 - v) * 0.25;
+  return error;
+}
+
+RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
+                      const RefineOptions& options, const CancelToken& cancel) {
+  RefineCounters counters;
+  std::vector<Link>& all = links.all();
+  std::vector<uint64_t> active(all.size());
+  for (size_t i = 0; i < active.size(); ++i) active[i] = i;
+  std::vector<Decision> decisions;
+  std::vector<Child> children;
+  std::atomic<uint64_t> rays{0}, nanoseconds{0};
+  while (!active.empty() && !cancel.cancelled()) {
+    decisions.assign(active.size(), Decision::kKeep);
+    parallel_for(
+        active.size(), [&](size_t i) { decisions[i] = decide(pool, state, all[active[i]], options); }, 256);
+    open_elements(pool, all, active, decisions, state);
+    std::vector<uint64_t> next;
+    children.clear();
+    for (size_t i = 0; i < active.size(); ++i) {
+      if (decisions[i] == Decision::kKeep) continue;
+      Link& link = all[active[i]];
+      const ElementId opened = decisions[i] == Decision::kSource ? link.source : link.receiver;
+      if (pool[opened].first_child == kNoElement) {
+        next.push_back(active[i]);
+        continue;
+      }
+      link.alive = false;
+      ++counters.links_refined;
+      list_children(pool, link, decisions[i], children);
+    }
+    std::erase_if(children, [&](const Child& c) { return hopeless(pool, c); });
+    if (options.most_links > 0 && all.size() + children.size() > options.most_links) counters.limited = true;
+    const size_t first = all.size();
+    all.resize(first + children.size());
+    parallel_for(
+        children.size(),
+        [&](size_t i) {
+          uint32_t points = 0, per_point = 0;
+          sampling_effort(pool, children[i], points, per_point);
+          RayCount cast;
+          if (children[i].receiver == children[i].source && pool[children[i].receiver].kind == ElementKind::kVolume) {
+            all[first + i].receiver = all[first + i].source = children[i].receiver;  // always opened: no samples needed
+          } else {
+            all[first + i] = make_link(pool, visibility, children[i].receiver, children[i].source, points, per_point, cast);
+          }
+          rays.fetch_add(cast.rays, std::memory_order_relaxed);
+          nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);
+        },
+        16);
+    for (size_t i = 0; i < children.size(); ++i) {
+      Link& link = all[first + i];
+      const bool box = pool[link.receiver].kind == ElementKind::kVolume || pool[link.source].kind == ElementKind::kVolume ||
+                       link.receiver == link.source;
+      if (link.unoccluded <= 0 && !box) {
+        link.alive = false;  // they do not face each other
+      } else {
+        next.push_back(first + i);
+      }
+    }
+    if (counters.limited) break;
+    active = std::move(next);
+  }
+  counters.rays = {rays.load(), nanoseconds.load()};
+  links.sort(pool.size());
+  return counters;
+}
+
+double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links) {
+  double sum = 0;
+  for (const Link& link : links.all()) sum += estimate_error(pool, state, link).total();
+  return sum;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,113 @@
+#include "solve/hierarchical/solver.h"
+
+#include <algorithm>
+
+#include "solve/hierarchical/push_pull.h"
+
+namespace goldthread {
+
+HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster, const SolveOptions& options)
+    : options_(options), pool_(surfaces), bound_(options.first_error) {
+  visibility_.caster = &caster;
+  Box box;
+  float magnitude = 0;
+  for (const Part& part : surfaces.parts)
+    for (const vec3& p : part.positions) {
+      if (!is_finite(p)) continue;
+      box.add(p);
+      magnitude = std::max(magnitude, largest(glm::abs(p)));
+    }
+  // Far above the rounding of coordinates, far below anything visible.
+  visibility_.epsilon = std::max(4e-6f * magnitude, 2e-6f * box.diagonal());
+  state_.grow_to(pool_);
+  make_first_links();
+}
+
+void HierarchicalSolver::make_first_links() {
+  const ElementId root = pool_.root();
+  if (root == kNoElement) return;
+  std::vector<Link>& all = links_.all();
+  Link self;
+  self.receiver = self.source = root;
+  all.push_back(self);
+  for (const ElementId light : pool_.lights()) all.push_back(make_link(pool_, visibility_, root, light, 8, 2, stats_.rays));
+  links_.sort(pool_.size());
+}
+
+double HierarchicalSolver::first_power() const { return static_cast<double>(largest(emitted_power(pool_))); }
+
+bool HierarchicalSolver::step(const CancelToken& cancel) {
+  if (pool_.root() == kNoElement || stats_.converged) return false;
+  const double landing = static_cast<double>(largest(landing_power(pool_, state_)));
+  RefineOptions refine_options;
+  refine_options.power_error = bound_ * (stats_.iterations == 0 ? first_power() : landing);
+  refine_options.least_area = static_cast<float>(options_.least_area * static_cast<double>(pool_[pool_.root()].area));
+  refine_options.most_links = options_.most_links;
+  const RefineCounters counters = refine(pool_, visibility_, links_, state_, refine_options, cancel);
+  stats_.rays += counters.rays;
+  stats_.limited |= counters.limited;
+  // The first steps only have to find where the light goes; the last has to settle.
+  const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
+  sweep(last ? 400 : 3, last ? options_.settled : 100 * options_.settled, cancel);
+  if (cancel.cancelled()) return false;
+  stats_.epsilon = bound_;
+  stats_.converged = last;
+  bound_ = std::max(options_.last_error, bound_ * options_.error_ratio);
+  return !last;
+}
+
+void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken& cancel) {
+  for (uint32_t i = 0; i < most; ++i) {
+    const double change = gather_push_pull(pool_, links_, state_);
+    ++stats_.iterations;
+    if (change < settled || cancel.cancelled()) break;
+  }
+  double squares = 0;
+  for (const Link& link : links_.all()) {
+    const double error = estimate_error(pool_, state_, link).total();
+    squares += error * error;
+  }
+  const double landing = static_cast<double>(largest(landing_power(pool_, state_)));
+  stats_.error_estimate = landing > 0 ? std::sqrt(squares) / landing : 0;
+}
+
+double HierarchicalSolver::share_done() const {
+  if (stats_.converged) return 1;
+  // Work grows about as the inverse of the bound's root.
+  const double first = std::sqrt(options_.first_error), last = std::sqrt(options_.last_error);
+  const double now = std::sqrt(std::max(stats_.epsilon > 0 ? stats_.epsilon : options_.first_error, options_.last_error));
+  return std::clamp((1 / now - 1 / first) / std::max(1e-12, 1 / last - 1 / first), 0.0, 1.0);
+}
+
+uint64_t HierarchicalSolver::memory_bytes() const {
+  return pool_.memory_bytes() + links_.memory_bytes() +
+         state_.radiosity.capacity() * (2 * sizeof(vec3) + 2 * sizeof(float) + sizeof(mat3));
+}
+
+vec3 emitted_power(const ElementPool& pool) {
+  vec3 power(0);
+  if (pool.root() == kNoElement) return power;
+  const Element& root = pool[pool.root()];
+  power += root.area * root.exitance;
+  Box box;
+  for (const Part& part : pool.surfaces().parts)
+    for (const vec3& p : part.positions)
+      if (is_finite(p)) box.add(p);
+  const vec3 size = box.size();
+  for (const ElementId id : pool.lights()) {
+    const Element& e = pool[id];
+    if (e.kind == ElementKind::kSky) {
+      power += e.exitance * box.surface_area() / 8.0f;  // an octant's share of what crosses the box inward
+    } else if (e.kind == ElementKind::kSun) {
+      const vec3 d = glm::abs(pool.light(id).direction);
+      power += e.exitance * (d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y);
+    } else {
+      const Light& light = pool.light(id);
+      const float solid_angle = light.kind == LightKind::kPoint ? 4 * kPi : 2 * kPi * (1 - std::cos(light.outer_cone));
+      power += e.exitance * solid_angle;
+    }
+  }
+  return power;
+}
+
+}  // namespace goldthread

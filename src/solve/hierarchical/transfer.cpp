@@ -1,0 +1,278 @@
+#include "solve/hierarchical/transfer.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/rng.h"
+
+namespace goldthread {
+namespace {
+
+// Largest error of a form factor that one piece of a source may bring in.
+constexpr float kTolerance = 2e-4f;
+
+// Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre `distance_squared` away,
+// may be treated as a point: the error of that falls as the square of size over distance.
+bool small_enough(float factor, float radius, float distance_squared) {
+  const float ratio = radius * radius / std::max(distance_squared, 1e-30f);
+  return ratio < 0.25f && factor * ratio < kTolerance;
+}
+
+vec3 dipole(const vec3& to_source, float distance_squared, const vec3& summed_normal) {
+  const float power = -dot(to_source, summed_normal);
+  if (power <= 0) return vec3(0);
+  return to_source * (power / (kPi * distance_squared * distance_squared));
+}
+
+struct PlacedTree {
+  const Part& part;
+  const FaceClusterTree& tree;
+  mat3 area_map;      // to the element's side
+  float winding;
+};
+
+vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& x, const vec3& n) {
+  const UVec3& corner = placed.tree.mesh.triangles[triangle];
+  const vec3 &a = placed.part.positions[corner.x], &b = placed.part.positions[corner.y],
+             &c = placed.part.positions[corner.z];
+  const vec3 normal = placed.winding * area_vector(a, b, c);
+  const vec3 centre = (a + b + c) / 3.0f;
+  const vec3 d = centre - x;
+  if (dot(a - x, normal) >= 0) return vec3(0);  // seen from behind: planar, so one corner tells
+  const float squared = dot(d, d);
+  const float radius_squared = std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
+  const float factor = -dot(d, normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
+  if (small_enough(factor, std::sqrt(radius_squared), squared))
+    return dot(d, n) > 0 ? dipole(d, squared, normal) : vec3(0);
+  const std::array<vec3, 3> corners{a, placed.winding > 0 ? b : c, placed.winding > 0 ? c : b};
+  return polygon_form_factor(x, n, corners);
+}
+
+// Descends a face cluster tree from `root`, adding up pieces that are small for their distance.
+vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n) {
+  vec3 sum(0);
+  constexpr size_t kStack = 256;
+  std::array<ClusterRef, kStack> stack;
+  size_t depth = 0;
+  stack[depth++] = root;
+  const float area_scale = placed.part.scale * placed.part.scale;
+  while (depth > 0) {
+    const ClusterRef ref = stack[--depth];
+    if (is_triangle(ref)) {
+      sum += triangle_transfer(placed, triangle_of(ref), x, n);
+      continue;
+    }
+    const FaceCluster& node = placed.tree.nodes[ref];
+    const vec3 d = vec3(placed.part.to_world * vec4(node.centre, 1)) - x;
+    const float radius = node.radius * placed.part.scale;
+    if (dot(d, n) < -radius) continue;  // wholly below the horizon
+    const float squared = dot(d, d);
+    const float area = node.area * area_scale;
+    const vec3 summed = placed.area_map * node.summed_normal;
+    const float distance = std::sqrt(squared);
+    // The angle between S and the way to x, against the cone of normals widened by the cluster's own extent.
+    const float facing = -dot(d, summed) / (distance * length(summed) + 1e-30f);
+    const float cone_sine = std::sqrt(std::max(0.0f, 1 - node.cone_cosine * node.cone_cosine));
+    const float extent = std::min(1.0f, radius / std::max(distance, 1e-30f));
+    const float slack = node.cone_cosine > 0 ? std::min(1.0f, cone_sine + extent) : 1.0f;
+    if (squared > radius * radius && facing < -slack && node.cone_cosine > 0) continue;  // all seen from behind
+    const float factor = area / (kPi * squared + 1e-30f);
+    const bool turned_here = facing > slack;  // every triangle faces x
+    const bool small = turned_here ? small_enough(factor, radius, squared)
+                                   : factor < kTolerance && squared > 4 * radius * radius;
+    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > kTolerance;
+    if ((small && !near_horizon) || depth + 2 > kStack) {
+      if (dot(d, n) > 0) sum += dipole(d, squared, summed);
+      continue;
+    }
+    stack[depth++] = node.child[1];
+    stack[depth++] = node.child[0];
+  }
+  return sum;
+}
+
+// A volume cluster: its stored samples stand for equal shares of its area.
+vec3 volume_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+  const float area = pool[source].area / static_cast<float>(kStoredSamples);
+  vec3 sum(0);
+  for (uint32_t i = 0; i < kStoredSamples; ++i) {
+    const SurfacePoint y = pool.sample(source, i);
+    const vec3 d = y.position - x;
+    const float cosine = -dot(d, y.normal);
+    if (cosine <= 0 || dot(d, n) <= 0) continue;
+    const float squared = dot(d, d);
+    // The disc of the sample's share bounds what a sample that happens to lie close may bring.
+    sum += d * (cosine * area / (squared * (kPi * squared + area)));
+  }
+  return sum;
+}
+
+vec3 point_light_transfer(const Light& light, const vec3& x, const vec3& n) {
+  const vec3 d = light.position - x;
+  const float squared = dot(d, d);
+  const float distance = std::sqrt(squared);
+  if (dot(d, n) <= 0 || squared <= 0) return vec3(0);
+  float factor = 1;
+  if (light.kind == LightKind::kSpot) {
+    // KHR_lights_punctual's recommended falloff between the cones.
+    const float cosine = -dot(d, light.direction) / distance;
+    const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+    const float t = std::clamp((cosine - outer) / std::max(inner - outer, 1e-3f), 0.0f, 1.0f);
+    factor = t * t;
+  }
+  if (light.range > 0) {
+    const float r = distance / light.range;
+    factor *= std::clamp(1 - r * r * r * r, 0.0f, 1.0f);
+  }
+  return d * (factor / (squared * distance));
+}
+
+// Reaches from surface to surface without touching either.
+Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const vec3& to_normal, float epsilon) {
+  Ray ray;
+  ray.origin = from + epsilon * from_normal;
+  ray.direction = to + epsilon * to_normal - ray.origin;
+  ray.near = 0;
+  ray.far = 1;
+  return ray;
+}
+
+uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCount& count) {
+  const auto start = std::chrono::steady_clock::now();
+  const uint32_t blocked = caster.occluded_packet(rays);
+  const auto time = std::chrono::steady_clock::now() - start;
+  count.rays += rays.size();
+  count.nanoseconds += static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  return blocked;
+}
+
+}  // namespace
+
+vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+  const Element& e = pool[source];
+  switch (e.kind) {
+    case ElementKind::kVolume: return volume_transfer(pool, source, x, n);
+    case ElementKind::kCluster:
+    case ElementKind::kTriangle: {
+      const Part& part = pool.surfaces().parts[e.part];
+      const PlacedTree placed{part, pool.surfaces().tree(part), e.back ? -1.0f * part.area_map : part.area_map,
+                              e.back ? -part.winding : part.winding};
+      if (e.kind == ElementKind::kTriangle) return triangle_transfer(placed, e.shape, x, n);
+      return tree_transfer(placed, e.shape, x, n);
+    }
+    case ElementKind::kPatch: {
+      const vec3 d = e.centre - x;
+      if (dot(d, e.summed_normal) >= 0) return vec3(0);
+      const float squared = dot(d, d);
+      const float factor = -dot(d, e.summed_normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
+      if (std::abs(dot(d, n)) > e.radius && small_enough(factor, e.radius, squared))
+        return dot(d, n) > 0 ? dipole(d, squared, e.summed_normal) : vec3(0);
+      return polygon_form_factor(x, n, pool.polygon(source).span());
+    }
+    case ElementKind::kSky: return sky_form_factor(n, pool.sky_corners(source));
+    case ElementKind::kPoint: return point_light_transfer(pool.light(source), x, n);
+    case ElementKind::kSun: {
+      const vec3 to_light = -pool.light(source).direction;
+      return dot(to_light, n) > 0 ? to_light : vec3(0);
+    }
+  }
+  return vec3(0);
+}
+
+float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
+                           uint32_t seed, RayCount& count) const {
+  const Element& e = pool[source];
+  const vec3 origin = x + epsilon * n;
+  if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
+    Ray ray{origin, -pool.surfaces().scene->lights[e.shape].direction};
+    if (e.kind == ElementKind::kPoint) {
+      ray.direction = e.centre - origin;
+      ray.far = 0.9999f;
+    }
+    return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
+  }
+  std::array<Ray, 16> packet;
+  std::array<float, 16> weight;
+  float seen = 0, all = 0;
+  const uint32_t turn = hash(seed, source);
+  for (uint32_t first = 0; first < rays; first += 16) {
+    size_t size = 0;
+    for (uint32_t i = first; i < std::min(rays, first + 16); ++i) {
+      const UnitSquarePoint uv = r2_point(i, turn);
+      if (e.kind == ElementKind::kSky) {
+        const vec3 direction = pool.sky_direction(source, uv.u, uv.v);
+        if (dot(direction, n) <= 0) continue;
+        packet[size] = {origin, direction};
+        weight[size++] = dot(direction, n);
+        continue;
+      }
+      // Stored samples suffice for few rays, and spare the descent.
+      const bool stored = rays < kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
+      const SurfacePoint y =
+          stored ? pool.sample(source, (i * kStoredSamples) / rays + turn % std::max(1u, kStoredSamples / rays))
+                 : pool.sample_at(source, uv.u, uv.v);
+      const vec3 d = y.position - x;
+      const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
+      if (here <= 0 || there <= 0) continue;
+      packet[size] = ray_between(x, n, y.position, y.normal, epsilon);
+      // Bounded, so that one near sample does not decide alone.
+      weight[size++] = here * there / (squared * (squared + 0.05f * e.area));
+    }
+    if (size == 0) continue;
+    const uint32_t blocked = timed_packet(*caster, {packet.data(), size}, count);
+    for (size_t k = 0; k < size; ++k) {
+      all += weight[k];
+      if ((blocked >> k & 1) == 0) seen += weight[k];
+    }
+  }
+  return all > 0 ? seen / all : 0.0f;
+}
+
+Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
+               uint32_t points, uint32_t rays_per_point, RayCount& ray_count) {
+  Link link;
+  link.receiver = receiver;
+  link.source = source;
+  const Element& r = pool[receiver];
+  const bool volume = r.kind == ElementKind::kVolume;
+  const uint32_t stride = kStoredSamples / points;
+  float low = std::numeric_limits<float>::max(), high = 0, seen = 0, weight = 0;
+  uint32_t rays = 0, facing = 0;
+  for (uint32_t i = 0; i < points; ++i) {
+    const SurfacePoint x = pool.sample(receiver, i * stride);
+    const vec3 m = point_transfer(pool, source, x.position, x.normal);
+    float here = dot(m, x.normal);
+    if (here <= 0) {
+      low = 0;
+      continue;
+    }
+    ++facing;
+    link.unoccluded += here;
+    const uint64_t before = ray_count.rays;
+    const float v = visibility.fraction(pool, source, x.position, x.normal, rays_per_point, receiver * 16 + i, ray_count);
+    rays += static_cast<uint32_t>(ray_count.rays - before);
+    seen += here * v;
+    weight += here;
+    here *= v;
+    link.transfer += m * v;
+    link.mean += here;
+    low = std::min(low, here);
+    high = std::max(high, here);
+  }
+  const float share = 1.0f / static_cast<float>(points);
+  // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
+  if (facing > 0) link.transfer /= static_cast<float>(facing);
+  link.mean *= share;
+  link.unoccluded *= share;
+  link.spread = high > low ? 0.5f * (high - low) : 0.0f;
+  link.visibility = static_cast<uint8_t>(std::lround(weight > 0 ? 255 * seen / weight : 0));
+  link.rays = static_cast<uint8_t>(std::min(rays, 255u));
+  // What children inherit is S_child . m; scaled so that over the whole receiver this keeps the sampled energy
+  // (equation 4.16 loses it as the cone of normals opens).
+  const float projected = dot(link.transfer, r.summed_normal);
+  if (!volume && r.cone_cosine > 0.3f && projected > 0)
+    link.transfer *= std::clamp(link.mean * r.area / projected, 0.5f, 2.0f);
+  return link;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,54 @@
+// How much of an element's radiosity arrives at a point, and between two elements.
+#pragma once
+#include <cstdint>
+
+#include "element/element_pool.h"
+#include "visibility/ray_caster.h"
+
+namespace goldthread {
+
+/// Vector form factor m of `source` at `x`, without occlusion: dot(n, m) times the source's radiosity is the irradiance
+/// on a receiver of unit normal `n`. Equation 4.19 where the source is far; near, face clusters are descended until each
+/// piece is small for its distance, and triangles and patches are exact (Lambert's contour formula), so that shared edges
+/// and closed sources need no special care. Zero below the receiver's horizon and behind the source.
+/// For lights the "radiosity" is what Element::exitance says: candela, lux, or the sky's lm/m^2.
+vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n);
+
+/// Rays cast, and the time that took, summed over threads.
+struct RayCount {
+  uint64_t rays = 0;
+  uint64_t nanoseconds = 0;
+  void operator+=(const RayCount& other) {
+    rays += other.rays;
+    nanoseconds += other.nanoseconds;
+  }
+};
+
+/// Rays between points and elements.
+struct Visibility {
+  const RayCaster* caster = nullptr;  ///< borrowed
+  float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
+
+  /// Share of `source` seen from `x`, from `rays` (1..64) rays to points on its real triangles, each weighted by what it
+  /// would bring. `seed` turns the pattern. 0 when no point of it faces `x`. Adds the rays cast to `count`.
+  float fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays, uint32_t seed,
+                 RayCount& count) const;
+};
+
+/// The light path between two elements (sections 4.2.3 and 4.5.3).
+struct Link {
+  ElementId receiver = kNoElement, source = kNoElement;
+  vec3 transfer{0};        ///< m: irradiance vector on the receiver per unit radiosity of the source, visibility included
+  float mean = 0;          ///< mean of dot(n, m) over the receiver's real triangles: irradiance per unit radiosity
+  float spread = 0;        ///< half the range of that over the receiver
+  float unoccluded = 0;    ///< mean, were everything visible
+  uint8_t visibility = 0;  ///< share of sample rays that got through, of 255
+  uint8_t rays = 0;        ///< how many there were
+  bool alive = true;
+};
+
+/// Samples the transfer with `points` receiver points of `rays_per_point` rays each. `points` 1..kStoredSamples.
+Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
+               uint32_t points, uint32_t rays_per_point, RayCount& ray_count);
+
+}  // namespace goldthread

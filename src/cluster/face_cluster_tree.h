@@ -1,4 +1,5 @@
-// Face cluster hierarchies (thesis 4.2): a multiresolution view of a mesh for light, built without touching it.
+// Face cluster hierarchies (thesis 4.2): a multiresolution view of a mesh for light, built without touching
+// it.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,22 +11,27 @@ namespace goldthread {
 /// A reference to a cluster: an inner node of the tree, or a single triangle when the high bit is set.
 using ClusterRef = uint32_t;
 constexpr ClusterRef kTriangleBit = 0x80000000u;
-constexpr bool is_triangle(ClusterRef ref) { return (ref & kTriangleBit) != 0; }
-constexpr uint32_t triangle_of(ClusterRef ref) { return ref & ~kTriangleBit; }
+constexpr bool is_triangle(ClusterRef ref) {
+  return (ref & kTriangleBit) != 0;
+}
+constexpr uint32_t triangle_of(ClusterRef ref) {
+  return ref & ~kTriangleBit;
+}
 
-/// An inner node: a connected set of at least two triangles, which is a contiguous range of the mesh's triangles.
-/// 56 bytes; there is one less than there are triangles in a component.
+/// An inner node: a connected set of at least two triangles, which is a contiguous range of the mesh's
+/// triangles. 56 bytes; there is one less than there are triangles in a component.
 struct FaceCluster {
-  uint32_t first = 0, count = 0;   ///< triangle range in FaceClusterTree::mesh
-  ClusterRef child[2] = {0, 0};    ///< child 0 covers the front of the range
-  vec3 summed_normal{0};           ///< S, the sum of area vectors (equation 4.9)
-  float area = 0;                  ///< sum of triangle areas
-  vec3 centre{0};                  ///< area-weighted centroid
-  float radius = 0;                ///< all vertices lie within this distance of the centre
-  float cone_cosine = -1;          ///< every triangle normal is within acos(this) of S's direction; -1 when S is ~0
+  uint32_t first = 0, count = 0;  ///< triangle range in FaceClusterTree::mesh
+  ClusterRef child[2] = {0, 0};   ///< child 0 covers the front of the range
+  vec3 summed_normal{0};          ///< S, the sum of area vectors (equation 4.9)
+  float area = 0;                 ///< sum of triangle areas
+  vec3 centre{0};                 ///< area-weighted centroid
+  float radius = 0;               ///< all vertices lie within this distance of the centre
+  float cone_cosine = -1;  ///< every triangle normal is within acos(this) of S's direction; -1 when S is ~0
 };
 
-/// The hierarchies of all connected components of one mesh. Shape only: shared by all instances, untouched by paint.
+/// The hierarchies of all connected components of one mesh. Shape only: shared by all instances, untouched by
+/// paint.
 struct FaceClusterTree {
   TriangleMesh mesh;               ///< triangles reordered so that each cluster is a range
   std::vector<FaceCluster> nodes;  ///< depth first: child 0 of node i, when a node, is i + 1
@@ -33,9 +39,11 @@ struct FaceClusterTree {
 };
 
 struct FaceClusterOptions {
-  float balance = 0.001f;            ///< k of equation 4.8: larger trades planarity for balance
-  uint32_t region_triangles = 8192;  ///< components above this are first clustered in regions of this size, in parallel
-  uint32_t region_reduction = 32;    ///< a region is clustered down to 1/this of its triangles before the final pass
+  float balance = 0.001f;  ///< k of equation 4.8: larger trades planarity for balance
+  uint32_t region_triangles =
+      8192;  ///< components above this are first clustered in regions of this size, in parallel
+  uint32_t region_reduction =
+      32;  ///< a region is clustered down to 1/this of its triangles before the final pass
 };
 
 /// Clusters each connected component of `mesh` (adjacency by welded position) bottom up by the quadric cost

@@ -32,8 +32,12 @@ struct VolumeClusterOptions {
   float orientation = 0;  ///< weight of the orientation term (thesis 9.2.3); 0 is equation 4.22 alone
 };
 
-/// Top down: the split along any axis, by item centres, that minimises the surface-area cost (equation 4.22), until one
-/// item is left. O(n log^2 n), deterministic for any number of threads.
-VolumeClusterTree build_volume_clusters(std::span<const VolumeItem> items, const VolumeClusterOptions& options = {});
+/// Top down: the split along any axis, by item centres, that minimises the surface-area cost (equation 4.22),
+/// until one item is left. O(n log^2 n), deterministic for any number of threads.
+VolumeClusterTree build_volume_clusters(std::span<const VolumeItem> items,
+                                        const VolumeClusterOptions& options = {});
+
+/// Aborts if boxes, items or depth-first order are broken. For tests.
+void validate(const VolumeClusterTree& tree, std::span<const VolumeItem> items);
 
 }  // namespace goldthread

@@ -1,0 +1,80 @@
+#include "scene/image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/colour.h"
+
+namespace goldthread {
+namespace {
+
+/// KHR_texture_transform: scale, then rotate counter-clockwise as seen with v pointing down, then move.
+vec2 placed(const Texture& texture, vec2 uv) {
+  uv *= texture.scale;
+  const float c = std::cos(texture.rotation), s = std::sin(texture.rotation);
+  return vec2(c * uv.x + s * uv.y, c * uv.y - s * uv.x) + texture.offset;
+}
+
+/// Column or row of a texel that may lie outside of the picture.
+uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
+  const int64_t n = int64_t(size);
+  if (wrap == Wrap::kClamp) return uint32_t(std::clamp<int64_t>(texel, 0, n - 1));
+  if (wrap == Wrap::kRepeat) return uint32_t(((texel % n) + n) % n);
+  const int64_t m = ((texel % (2 * n)) + 2 * n) % (2 * n);
+  return uint32_t(m < n ? m : 2 * n - 1 - m);
+}
+
+/// The two neighbours along one axis and the weight of the second.
+struct Neighbours {
+  uint32_t first, second;
+  float weight;
+};
+
+Neighbours neighbours(float coordinate, uint32_t size, Wrap wrap) {
+  // Beyond 1e6 repeats a float has no fraction left; infinite and undefined coordinates end up there too.
+  const float bounded = std::isfinite(coordinate) ? std::clamp(coordinate, -1e6f, 1e6f) : 0.0f;
+  const double texel = double(bounded) * size - 0.5;
+  const double below = std::floor(texel);
+  return {wrapped(int64_t(below), size, wrap), wrapped(int64_t(below) + 1, size, wrap), float(texel - below)};
+}
+
+std::array<float, 256> srgb_table() {
+  std::array<float, 256> table{};
+  for (size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(float(i) / 255);
+  return table;
+}
+
+vec4 texel_at(const Image& image, uint32_t x, uint32_t y, bool srgb) {
+  static const std::array<float, 256> linear = srgb_table();
+  const uint8_t* t = &image.rgba[(size_t(y) * image.width + x) * 4];
+  const float alpha = float(t[3]) / 255;
+  if (srgb) return vec4(linear[t[0]], linear[t[1]], linear[t[2]], alpha);
+  return vec4(float(t[0]) / 255, float(t[1]) / 255, float(t[2]) / 255, alpha);
+}
+
+vec4 sample(const Texture& texture, const std::vector<Image>& images, vec2 uv, bool srgb) {
+  if (!texture.present() || size_t(texture.image) >= images.size()) return vec4(1);
+  const Image& image = images[size_t(texture.image)];
+  if (image.empty()) return vec4(1);
+  const vec2 at = placed(texture, uv);
+  const Neighbours u = neighbours(at.x, image.width, texture.wrap_u);
+  const Neighbours v = neighbours(at.y, image.height, texture.wrap_v);
+  const vec4 top =
+      glm::mix(texel_at(image, u.first, v.first, srgb), texel_at(image, u.second, v.first, srgb), u.weight);
+  const vec4 bottom =
+      glm::mix(texel_at(image, u.first, v.second, srgb), texel_at(image, u.second, v.second, srgb), u.weight);
+  return glm::mix(top, bottom, v.weight);
+}
+
+}  // namespace
+
+vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
+  return sample(texture, images, uv, true);
+}
+
+vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
+  return sample(texture, images, uv, false);
+}
+
+}  // namespace goldthread

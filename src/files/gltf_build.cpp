@@ -20,20 +20,6 @@ std::vector<uint32_t> finite_triangles(const Primitive& primitive) {
   return indices;
 }
 
-/// glTF demands unit length, so a broken normal gets a direction, any direction.
-std::vector<vec3> unit_normals(const std::vector<vec3>& normals) {
-  std::vector<vec3> unit(normals.size());
-  for (size_t i = 0; i < normals.size(); ++i)
-    unit[i] = is_finite(normals[i]) ? normalize_or(normals[i], vec3(0, 1, 0)) : vec3(0, 1, 0);
-  return unit;
-}
-
-std::vector<vec4> shares(const std::vector<vec4>& colours) {
-  std::vector<vec4> clamped(colours.size());
-  for (size_t i = 0; i < colours.size(); ++i) clamped[i] = glm::clamp(colours[i], vec4(0), vec4(1));
-  return clamped;
-}
-
 bool uses_texcoord(const Material& material, uint8_t set) {
   for (const Texture* texture :
        {&material.base_colour_texture, &material.metallic_texture, &material.emission_texture})
@@ -66,7 +52,8 @@ Json build_primitive(GltfDocument& document, const Primitive& primitive, const S
     attributes["NORMAL"] = append_attribute(document, std::span<const vec3>(unit_normals(primitive.normals)));
   add_texcoords(document, attributes, primitive, scene.materials[primitive.material]);
   if (!primitive.colours.empty())
-    attributes["COLOR_0"] = append_attribute(document, std::span<const vec4>(shares(primitive.colours)));
+    attributes["COLOR_0"] =
+        append_attribute(document, std::span<const vec4>(clamp_colours(primitive.colours)));
   const uint32_t index = append_indices(document, indices, primitive.positions.size());
   return {{"attributes", attributes}, {"indices", index}, {"material", primitive.material}};
 }
@@ -94,6 +81,20 @@ std::vector<uint32_t> build_meshes(BuiltDocument& built, const Scene& scene) {
 }
 
 }  // namespace
+
+/// glTF demands unit length, so a broken normal gets a direction, any direction.
+std::vector<vec3> unit_normals(const std::vector<vec3>& normals) {
+  std::vector<vec3> unit(normals.size());
+  for (size_t i = 0; i < normals.size(); ++i)
+    unit[i] = is_finite(normals[i]) ? normalize_or(normals[i], vec3(0, 1, 0)) : vec3(0, 1, 0);
+  return unit;
+}
+
+std::vector<vec4> clamp_colours(const std::vector<vec4>& colours) {
+  std::vector<vec4> clamped(colours.size());
+  for (size_t i = 0; i < colours.size(); ++i) clamped[i] = glm::clamp(colours[i], vec4(0), vec4(1));
+  return clamped;
+}
 
 BuiltDocument build_document(const Scene& scene) {
   BuiltDocument built;

@@ -26,4 +26,8 @@ struct BuiltDocument {
 /// The sky is left out: glTF has no word for it.
 BuiltDocument build_document(const Scene& scene);
 
+/// Values as such a document has them: normals of unit length whatever they were, colours in 0..1.
+std::vector<vec3> unit_normals(const std::vector<vec3>& normals);
+std::vector<vec4> clamp_colours(const std::vector<vec4>& colours);
+
 }  // namespace goldthread

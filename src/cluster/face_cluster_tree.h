@@ -39,7 +39,7 @@ struct FaceClusterTree {
 };
 
 struct FaceClusterOptions {
-  float balance = 0.001f;  ///< k of equation 4.8: larger trades planarity for balance
+  float balance = 0.001f;  ///< k of equation 4.8: larger trades planarity for balance. At least 1e-6
   uint32_t region_triangles =
       8192;  ///< components above this are first clustered in regions of this size, in parallel
   uint32_t region_reduction =

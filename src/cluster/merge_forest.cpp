@@ -14,6 +14,9 @@
 namespace goldthread {
 namespace {
 
+/// A smaller k would be lost in the rounding of E_fit: on planes, where E_fit is 0, clusters would grow by number alone.
+constexpr float kLeastBalance = 1e-6f;
+
 constexpr uint32_t kNone = 0xffffffffu;
 
 /// Mesh space moved and scaled to a box of about unit size, by a power of two: the tree of a mesh scaled by a
@@ -50,7 +53,7 @@ struct Remainder {
 class Builder {
  public:
   Builder(const TriangleMesh& mesh, const FaceClusterOptions& options)
-      : mesh_(mesh), options_(options), frame_(mesh.positions) {}
+      : mesh_(mesh), options_(options), balance_(std::max(options.balance, kLeastBalance)), frame_(mesh.positions) {}
 
   MergeForest build() {
     twins_ = find_twins(mesh_);
@@ -96,12 +99,12 @@ class Builder {
 
   void collapse_region(uint32_t number, bool whole) {
     MergeForest::Region& region = forest_.regions[number];
-    if (region.end - region.begin == 1) return;
+    if (whole && region.end - region.begin == 1) return;
     Scratch& scratch = scratch_.local();
     add_triangles(region, scratch.merger);
     const uint32_t reduction = std::max(options_.region_reduction, 1u);
     scratch.merges.clear();
-    scratch.merger.run(options_.balance, whole ? 1 : std::max((region.end - region.begin) / reduction, 1u),
+    scratch.merger.run(balance_, whole ? 1 : std::max((region.end - region.begin) / reduction, 1u),
                        region.begin, scratch.merges);
     region.merges = uint32_t(scratch.merges.size());
     std::copy(scratch.merges.begin(), scratch.merges.end(), forest_.merges.begin() + region.begin);
@@ -157,7 +160,7 @@ class Builder {
     add_crossings(component, base, boundaries);
     for (uint32_t r = component.first_region; r < component.region_end; ++r) remainders_[r] = {};
     add_summed(boundaries, merger);
-    merger.run(options_.balance, 1, forest_.slots(), component.final_merges);
+    merger.run(balance_, 1, forest_.slots(), component.final_merges);
     costs_computed_[component.first_region] += merger.costs_computed();
   }
 
@@ -204,6 +207,7 @@ class Builder {
 
   const TriangleMesh& mesh_;
   const FaceClusterOptions& options_;
+  float balance_;
   UnitFrame frame_;
   MergeForest forest_;
   bool many_regions_ = false;

@@ -27,7 +27,11 @@ struct TriangleMesh {
 /// Corner k of a kept triangle is corner k of its source triangle.
 TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices);
 
-/// Twice-area vector's half: the normal of a triangle times its area.
-inline vec3 area_vector(const vec3& a, const vec3& b, const vec3& c) { return 0.5f * cross(b - a, c - a); }
+/// The normal of a triangle times its area. Worked out in double: the cross product of two long sides of a thin
+/// triangle loses its leading digits, and CAD is full of those.
+inline vec3 area_vector(const vec3& a, const vec3& b, const vec3& c) {
+  const dvec3 from(a);
+  return vec3(0.5 * cross(dvec3(b) - from, dvec3(c) - from));
+}
 
 }  // namespace goldthread

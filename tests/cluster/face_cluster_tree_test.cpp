@@ -61,7 +61,7 @@ TEST(FaceClusterTree, CubeFallsIntoItsSixFaces) {
     EXPECT_NEAR(length(root.summed_normal), 0, 1e-5f);
     EXPECT_NEAR(root.area, 6, 1e-4f);
     EXPECT_NEAR(length(root.centre - vec3(0.5f)), 0, 1e-5f);
-    EXPECT_NEAR(root.radius, std::sqrt(0.75f), 0.01f);
+    EXPECT_NEAR(root.radius, std::sqrt(0.75f), 0.05f);
     EXPECT_EQ(root.cone_cosine, -1);
   }
 }
@@ -131,21 +131,30 @@ TEST(FaceClusterTree, TheSameForAnyNumberOfThreads) {
   }
 }
 
-/// Work is counted in costs computed, not in seconds: greedy collapse needs a few a triangle whatever the
-/// shape.
+/// Work is counted in costs computed, not in seconds: greedy collapse needs a few a triangle whatever the shape.
 void expect_linear_work(const shapes::Soup& soup, const FaceClusterOptions& options, uint32_t deepest) {
   const TriangleMesh mesh = soup.weld();
-  EXPECT_LE(merge_triangles(mesh, options).costs_computed, 40 * mesh.triangles.size());
+  EXPECT_LE(merge_triangles(mesh, options).costs_computed, 16 * mesh.triangles.size());
   EXPECT_LE(depth_of(build(soup, options)), deepest);
 }
 
-TEST(FaceClusterTree, LongStripsFansAndPlates) {
-  expect_linear_work(shapes::strip(1000000), {}, 200);
-  expect_linear_work(shapes::fan(300000), {}, 400);
-  expect_linear_work(shapes::flat_grid(500), {}, 200);
-  expect_linear_work(shapes::spiked_plate(300), {}, 60000);
-  expect_linear_work(shapes::spiked_plate(300), {.balance = 0, .region_triangles = 1u << 30}, 60000);
-  expect_linear_work(shapes::flat_grid(300), {.balance = 0, .region_triangles = 1u << 30}, 180000);
+constexpr uint32_t kOneRegion = 1u << 30;
+
+TEST(FaceClusterTree, LongStripsAndFans) {
+  expect_linear_work(shapes::strip(1000000), {}, 40);
+  expect_linear_work(shapes::fan(300000), {}, 40);
+}
+
+TEST(FaceClusterTree, FlatGridsStayBalancedWithoutBalance) {
+  expect_linear_work(shapes::flat_grid(400), {}, 40);
+  expect_linear_work(shapes::flat_grid(300), {.balance = 0, .region_triangles = kOneRegion}, 40);
+}
+
+TEST(FaceClusterTree, APlateOfManyNeighboursIsNotQuadratic) {
+  // The plate swallows its spikes one by one: the tree is deep, the work is not.
+  const shapes::Soup plate = shapes::spiked_plate(300);
+  expect_linear_work(plate, {}, 3000);
+  expect_linear_work(plate, {.balance = 0, .region_triangles = kOneRegion}, 30000);
 }
 
 RC_GTEST_PROP(FaceClusterTree, AnySoupGivesAValidTree, ()) {

@@ -80,7 +80,7 @@ TEST(VolumeClusterTree, OrientationKeepsFacingPlatesApart) {
   // A row of plates in which ups and downs alternate along x and sit a little apart along y.
   std::vector<VolumeItem> items;
   for (int i = 0; i < 8; ++i)
-    items.push_back(item_at(vec3(float(i), i % 2 ? 1.0f : 0.0f, 0), 0.5f, vec3(0, i % 2 ? 1 : -1, 0)));
+    items.push_back(item_at(vec3(float(i), i % 2 ? 0.5f : 0.0f, 0), 0.5f, vec3(0, i % 2 ? 1 : -1, 0)));
   const auto mixed = [&](const VolumeClusterTree& tree) {
     int up = 0, down = 0;
     std::vector<VolumeRef> open{tree.nodes[0].child[0]};

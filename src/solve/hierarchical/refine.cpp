@@ -127,14 +127,14 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
 }
 
 RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
-                      const RefineOptions& options, const CancelToken& cancel) {
+                      const RefineOptions& options, const CancelToken& cancel, RayCount& total_rays,
+                      const std::function<void()>& between_waves) {
   RefineCounters counters;
   std::vector<Link>& all = links.all();
   std::vector<uint64_t> active(all.size());
   for (size_t i = 0; i < active.size(); ++i) active[i] = i;
   std::vector<Decision> decisions;
   std::vector<Child> children;
-  std::atomic<uint64_t> rays{0}, nanoseconds{0};
   while (!active.empty() && !cancel.cancelled()) {
     decisions.assign(active.size(), Decision::kKeep);
     parallel_for(
@@ -156,6 +156,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
     }
     std::erase_if(children, [&](const Child& c) { return hopeless(pool, c); });
     if (options.most_links > 0 && all.size() + children.size() > options.most_links) counters.limited = true;
+    std::atomic<uint64_t> rays{0}, nanoseconds{0};
     const size_t first = all.size();
     all.resize(first + children.size());
     parallel_for(
@@ -183,10 +184,11 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
         next.push_back(first + i);
       }
     }
+    total_rays += {rays.load(), nanoseconds.load()};
+    if (between_waves) between_waves();
     if (counters.limited) break;
     active = std::move(next);
   }
-  counters.rays = {rays.load(), nanoseconds.load()};
   links.sort(pool.size());
   return counters;
 }

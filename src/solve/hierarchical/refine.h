@@ -15,7 +15,6 @@ struct RefineOptions {
 };
 
 struct RefineCounters {
-  RayCount rays;
   uint64_t links_refined = 0;
   bool limited = false;           ///< most_links was reached
 };
@@ -30,9 +29,11 @@ struct LinkError {
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 
 /// Refines breadth first until no link exceeds the bound. New elements are made as they are needed. Each wave of links is
-/// decided and sampled in parallel and laid out in a fixed order, so that the result does not depend on the threads.
+/// decided and sampled in parallel and laid out in a fixed order, so that the result does not depend on the threads. Rays
+/// are added to `rays` wave by wave; `between_waves` may be empty.
 RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
-                      const RefineOptions& options, const CancelToken& cancel);
+                      const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
+                      const std::function<void()>& between_waves);
 
 /// The sum of the estimated errors over all links, lm.
 double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links);

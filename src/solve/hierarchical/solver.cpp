@@ -43,8 +43,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   refine_options.power_error = bound_ * (stats_.iterations == 0 ? first_power() : landing);
   refine_options.least_area = static_cast<float>(options_.least_area * static_cast<double>(pool_[pool_.root()].area));
   refine_options.most_links = options_.most_links;
-  const RefineCounters counters = refine(pool_, visibility_, links_, state_, refine_options, cancel);
-  stats_.rays += counters.rays;
+  const RefineCounters counters = refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   // The first steps only have to find where the light goes; the last has to settle.
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;

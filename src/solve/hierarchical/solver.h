@@ -1,6 +1,7 @@
 // The hierarchical solver: refine, gather, push-pull, with a falling error bound (thesis 4.5.2).
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "base/progress.h"
 #include "element/element_pool.h"
@@ -49,6 +50,9 @@ class HierarchicalSolver {
   const Visibility& visibility() const { return visibility_; }
   const SolveStats& stats() const { return stats_; }
   uint64_t memory_bytes() const;
+
+  /// Called on the stepping thread between waves of refinement, when elements and their light (not links) may be read.
+  std::function<void()> between_waves;
 
  private:
   void make_first_links();

@@ -112,18 +112,7 @@ vec3 point_light_transfer(const Light& light, const vec3& x, const vec3& n) {
   const float squared = dot(d, d);
   const float distance = std::sqrt(squared);
   if (dot(d, n) <= 0 || squared <= 0) return vec3(0);
-  float factor = 1;
-  if (light.kind == LightKind::kSpot) {
-    // KHR_lights_punctual's recommended falloff between the cones.
-    const float cosine = -dot(d, light.direction) / distance;
-    const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
-    const float t = std::clamp((cosine - outer) / std::max(inner - outer, 1e-3f), 0.0f, 1.0f);
-    factor = t * t;
-  }
-  if (light.range > 0) {
-    const float r = distance / light.range;
-    factor *= std::clamp(1 - r * r * r * r, 0.0f, 1.0f);
-  }
+  const float factor = light_distribution(light, -d / distance) * light_range_factor(light, distance);
   return d * (factor / (squared * distance));
 }
 
@@ -147,6 +136,19 @@ uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCou
 }
 
 }  // namespace
+
+float light_distribution(const Light& light, const vec3& d) {
+  if (light.kind != LightKind::kSpot) return 1;
+  const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+  const float t = std::clamp((dot(d, light.direction) - outer) / std::max(inner - outer, 1e-3f), 0.0f, 1.0f);
+  return t * t;
+}
+
+float light_range_factor(const Light& light, float distance) {
+  if (light.range <= 0) return 1;
+  const float r = distance / light.range;
+  return std::clamp(1 - r * r * r * r, 0.0f, 1.0f);
+}
 
 vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
   const Element& e = pool[source];

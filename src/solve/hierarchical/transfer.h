@@ -14,6 +14,11 @@ namespace goldthread {
 /// For lights the "radiosity" is what Element::exitance says: candela, lux, or the sky's lm/m^2.
 vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n);
 
+/// Share of a point or spot light's intensity that goes in unit direction `d` (KHR_lights_punctual's cone falloff).
+float light_distribution(const Light& light, const vec3& d);
+/// Share that is left at `distance` metres of a light with a range (KHR_lights_punctual), besides the inverse square.
+float light_range_factor(const Light& light, float distance);
+
 /// Rays cast, and the time that took, summed over threads.
 struct RayCount {
   uint64_t rays = 0;

@@ -1,0 +1,44 @@
+#include "reconstruct/final_gather.h"
+
+#include <algorithm>
+
+namespace goldthread {
+namespace {
+
+// Rays worth casting for a link that would bring `share` of a point's light if it were all visible.
+uint32_t rays_for(float share, const Link& link, ElementKind source, const GatherOptions& options) {
+  if (share < options.ray_share) return 0;
+  if (source == ElementKind::kPoint || source == ElementKind::kSun) return 1;
+  const bool mixed = link.visibility > 0 && link.visibility < 255;
+  const float wanted = share * static_cast<float>(options.light_rays) * (mixed ? 2.0f : 0.5f);
+  return static_cast<uint32_t>(std::clamp(std::ceil(wanted), mixed ? 2.0f : 1.0f, 64.0f));
+}
+
+}  // namespace
+
+vec3 gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
+               const GatherOptions& options, uint32_t seed, RayCount& rays) {
+  const ElementPool& pool = solver.pool();
+  const RadiosityState& state = solver.state();
+  // What the leaf has in all, against which single links are weighed; its own value may be nought in a shadow.
+  const float whole = largest(state.irradiance[leaf]) + 1e-20f;
+  vec3 sum(0);
+  for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
+    for (const Link& link : solver.links().into(id)) {
+      const vec3& b = state.radiosity[link.source];
+      const float most = largest(b);
+      if (most <= 0) continue;
+      const vec3 m = point_transfer(pool, link.source, x, n);
+      const float factor = dot(m, n);
+      if (factor <= 0) continue;
+      const ElementKind kind = pool[link.source].kind;
+      const uint32_t count = rays_for(factor * most / (whole + factor * most), link, kind, options);
+      float visible = static_cast<float>(link.visibility) / 255.0f;
+      if (count > 0) visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays);
+      sum += visible * factor * b;
+    }
+  }
+  return sum;
+}
+
+}  // namespace goldthread

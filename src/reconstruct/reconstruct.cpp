@@ -1,0 +1,106 @@
+#include "reconstruct/reconstruct.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "reconstruct/final_gather.h"
+#include "reconstruct/light_points.h"
+
+namespace goldthread {
+namespace {
+
+// Means of the adjoining leaves' irradiance, each turned to the point's own normal, by area.
+std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoints& points,
+                               const std::vector<ElementId>& leaves, bool back) {
+  std::vector<vec3> sum(points.points.size(), vec3(0));
+  std::vector<float> weight(points.points.size(), 0);
+  for (uint32_t f = 0; f + 1 < points.corner_first.size(); ++f) {
+    if (leaves[f] == kNoElement) continue;
+    const Element& leaf = solver.pool()[leaves[f]];
+    const mat3& vector = solver.state().vector[leaves[f]];
+    for (uint32_t c = points.corner_first[f]; c < points.corner_first[f + 1]; ++c) {
+      const uint32_t p = points.corners[c];
+      const vec3 n = back ? -points.points[p].normal : points.points[p].normal;
+      // A flat leaf's vector holds only what its normal faces; a curved one's is turned.
+      const vec3 turned = leaf.cone_cosine > 0.95f ? solver.state().irradiance[leaves[f]] : glm::max(n * vector, vec3(0));
+      sum[p] += turned;
+      weight[p] += 1;
+    }
+  }
+  for (size_t p = 0; p < sum.size(); ++p)
+    if (weight[p] > 0) sum[p] /= weight[p];
+  return sum;
+}
+
+// Points on an edge are drawn a little into their face: at the edge itself, a wall that stands on a floor is neither
+// before nor behind it.
+vec3 drawn_in(const LightPoint& point, const PartPoints& points, const vec3& n, float epsilon) {
+  const vec3 way = points.face_centres[point.face] - point.position;
+  const float distance = length(way);
+  const float step = std::min(0.5f * distance, std::max(0.01f * distance, 4 * epsilon));
+  vec3 moved = point.position + way * (distance > 0 ? step / distance : 0.0f);
+  (void)n;
+  return moved;
+}
+
+std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints& points,
+                              const std::vector<ElementId>& leaves, bool back, const ReconstructOptions& options,
+                              const CancelToken& cancel, ReconstructStats& stats) {
+  std::vector<vec3> light = average_side(solver, points, leaves, back);
+  const GatherOptions gather{options.light_rays, options.ray_share};
+  std::atomic<uint64_t> rays{0}, nanoseconds{0};
+  parallel_for(
+      points.points.size(),
+      [&](size_t i) {
+        if (cancel.cancelled()) return;
+        const LightPoint& point = points.points[i];
+        const ElementId leaf = leaves[point.face];
+        if (leaf == kNoElement) return;
+        const vec3 n = back ? -point.normal : point.normal;
+        RayCount count;
+        light[i] = gather_at(solver, leaf, drawn_in(point, points, n, solver.visibility().epsilon), n, gather,
+                             hash(static_cast<uint32_t>(i), 77), count);
+        rays.fetch_add(count.rays, std::memory_order_relaxed);
+        nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
+      },
+      32);
+  stats.rays += {rays.load(), nanoseconds.load()};
+  stats.points += points.points.size();
+  return light;
+}
+
+std::vector<vec3> to_vertices(const std::vector<vec3>& light, const std::vector<uint32_t>& point_of_vertex) {
+  std::vector<vec3> out(point_of_vertex.size(), vec3(0));
+  for (size_t v = 0; v < out.size(); ++v)
+    if (point_of_vertex[v] != kNoPoint) out[v] = light[point_of_vertex[v]];
+  return out;
+}
+
+}  // namespace
+
+Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
+                     ReconstructStats& stats) {
+  const ElementPool& pool = solver.pool();
+  const SurfaceSet& set = pool.surfaces();
+  Lighting lighting;
+  for (uint32_t part = 0; part < set.parts.size(); ++part) {
+    const Material& material = set.scene->materials[set.parts[part].material];
+    if (material.unlit || set.tree(set.parts[part]).mesh.triangles.empty()) continue;
+    const PartPoints points = collect_light_points(pool, part);
+    std::vector<uint32_t> point_of_vertex;
+    LitPrimitive lit = build_output_mesh(pool, part, points, point_of_vertex);
+    for (int side = 0; side < (material.double_sided ? 2 : 1); ++side) {
+      const std::vector<ElementId> leaves = pool.leaf_elements(part, side == 1);
+      const std::vector<vec3> light = options.method == Reconstruction::kAverage
+                                          ? average_side(solver, points, leaves, side == 1)
+                                          : gather_side(solver, points, leaves, side == 1, options, cancel, stats);
+      (side == 0 ? lit.irradiance : lit.irradiance_back) = to_vertices(light, point_of_vertex);
+    }
+    lighting.primitives.push_back(std::move(lit));
+  }
+  return lighting;
+}
+
+}  // namespace goldthread

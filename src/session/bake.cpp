@@ -1,0 +1,338 @@
+#include "goldthread/bake.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "base/rng.h"
+#include "files/atomic_file.h"
+#include "files/image_write.h"
+#include "files/scene_read.h"
+#include "files/scene_write.h"
+#include "files/solution_file.h"
+#include "math/tone_map.h"
+#include "reconstruct/reconstruct.h"
+#include "session/light_setup.h"
+#include "session/report.h"
+#include "session/solve_session.h"
+#include "trace/preview.h"
+
+namespace goldthread {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string file_extension(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::span<const uint8_t> as_bytes(const std::string& text) {
+  return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
+}
+
+struct Effort {
+  SolveOptions solve;
+  ReconstructOptions reconstruct;
+};
+
+Effort effort_for(Quality quality) {
+  Effort effort;
+  switch (quality) {
+    case Quality::kDraft:
+      effort.solve.last_error = 1e-4;
+      effort.solve.least_area = 2e-4;
+      effort.reconstruct.light_rays = 16;
+      effort.reconstruct.ray_share = 0.03f;
+      break;
+    case Quality::kMedium:
+      effort.solve.last_error = 1.5e-5;
+      effort.solve.least_area = 2.5e-5;
+      break;
+    case Quality::kHigh:
+      effort.solve.last_error = 3e-6;
+      effort.solve.least_area = 6e-6;
+      effort.reconstruct.light_rays = 64;
+      effort.reconstruct.ray_share = 0.005f;
+      break;
+    case Quality::kFinal:
+      effort.solve.last_error = 1e-6;
+      effort.solve.least_area = 1.5e-6;
+      effort.reconstruct.light_rays = 128;
+      effort.reconstruct.ray_share = 0.002f;
+      break;
+  }
+  return effort;
+}
+
+// One bake from start to end; the steps in order, each leaving its result and its seconds.
+class Bake {
+ public:
+  Bake(const BakeOptions& options, const BakeListener& listener) : options_(options), listener_(listener) {}
+
+  Result<BakeResult> run() {
+    if (const Status status = check_options(); !status) return status.error();
+    const int threads = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
+    report_.threads = threads;
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    if (const Status status = load(); !status) return status.error();
+    if (const Status status = preprocess(); !status) return status.error();
+    if (const Status status = solve(); !status) return status.error();
+    reconstruct_light();
+    if (const Status status = write(); !status) return status.error();
+    result_.cancelled = cancelled_;
+    return std::move(result_);
+  }
+
+ private:
+  Status check_options() const;
+  Status load();
+  Status preprocess();
+  Status solve();
+  void reconstruct_light();
+  Status write();
+  Status write_one(const std::string& file);
+  void finish_report();
+  std::string summary() const;
+  bool stop_asked() {
+    if (listener_.cancelled && listener_.cancelled()) cancelled_ = true;
+    return cancelled_;
+  }
+  void tell(const std::string& stage, double share, double rays_per_second = 0, double error = 0, double remaining = -1) {
+    if (listener_.on_progress)
+      listener_.on_progress({stage, share, rays_per_second, error, since(start_), remaining});
+  }
+  double time_left() const {
+    return options_.time_limit ? *options_.time_limit - since(start_) : std::numeric_limits<double>::infinity();
+  }
+
+  const BakeOptions& options_;
+  const BakeListener& listener_;
+  const Clock::time_point start_ = Clock::now();
+  BakeReport report_;
+  BakeResult result_;
+  bool cancelled_ = false, out_of_memory_ = false, out_of_time_ = false;
+  CancelToken never_;
+
+  Scene scene_;
+  SurfaceSet surfaces_;
+  std::unique_ptr<RayCaster> caster_;
+  std::unique_ptr<HierarchicalSolver> solver_;
+  Lighting lighting_;
+};
+
+Status Bake::check_options() const {
+  if (options_.outputs.empty()) return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
+  for (const std::string& file : options_.outputs) {
+    const std::string extension = file_extension(file);
+    if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" && extension != ".exr")
+      return Error{ErrorCode::kUsage, "cannot tell the output's format", file, {}, "end it in .glb, .gltf, .gold, .png or .exr"};
+    // Known before hours are spent on what cannot be kept.
+    if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
+  }
+  if (!options_.report_file.empty())
+    if (const auto probe = AtomicFile::create(options_.report_file); !probe) return probe.error();
+  return Nothing{};
+}
+
+Status Bake::load() {
+  tell("load", 0);
+  Result<Scene> scene = read_scene(options_.input);
+  if (!scene) return scene.error();
+  scene_ = std::move(*scene);
+  add_requested_lights(scene_, options_);
+  report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
+  std::erase(report_.warnings, std::string());
+  report_.seconds.load = since(start_);
+  if (scene_.triangle_count() == 0)
+    return Error{ErrorCode::kNothingToBake, "has no triangles", options_.input, {}, "give a file with a mesh in it"};
+  return Nothing{};
+}
+
+Status Bake::preprocess() {
+  tell("preprocess", 0.02);
+  const auto begin = Clock::now();
+  surfaces_ = build_surfaces(scene_, never_);
+  report_.seconds.face_clusters = since(begin);
+  for (const std::string& warning : describe_problems(surfaces_)) report_.warnings.push_back(warning);
+  if (surfaces_.surfaces.empty())
+    return Error{ErrorCode::kNothingToBake, "no surface can receive light", options_.input, {},
+                 "every triangle is degenerate or of an unlit material"};
+  if (!has_light(surfaces_))
+    return Error{ErrorCode::kNothingToBake, "no light in the scene: nothing emits and there is no lamp", options_.input, {},
+                 "add --sky 1000 or --sun 50000, or give a material an emission"};
+  if (stop_asked()) return Error{ErrorCode::kCancelled, "stopped before there was any light to keep", options_.input, {}, {}};
+  const auto bvh = Clock::now();
+  {
+    const WorldTriangles world = world_triangles(surfaces_);
+    PassThrough pass;
+    if (!world.see_through.empty()) pass = [this](uint32_t t, vec2 w, const Ray& ray) { return passes(t, w, ray, surfaces_); };
+    caster_ = std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(pass));
+  }
+  report_.seconds.ray_bvh = since(bvh);
+  const auto volumes = Clock::now();
+  Effort effort = effort_for(options_.quality);
+  solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
+  report_.seconds.volume_clusters = since(volumes);
+  report_.seconds.preprocess = since(begin);
+  report_.preprocess_bytes = memory_bytes(surfaces_) + solver_->memory_bytes();
+  report_.ray_bvh_bytes = caster_->memory_bytes();
+  report_.scene = {surfaces_.triangles,        surfaces_.surfaces.size(), surfaces_.face_clusters,
+                   solver_->pool().volume_clusters(), scene_.lights.size() + (scene_.sky.present() ? 1 : 0) + count_emitters(surfaces_),
+                   surfaces_.area};
+  return Nothing{};
+}
+
+Status Bake::solve() {
+  const auto begin = Clock::now();
+  SolveSession session(*solver_);
+  const uint64_t memory_limit = options_.max_memory.value_or(0);
+  std::atomic<bool> full{false};
+  session.watch = [&] {
+    // The reconstruction still needs room of its own.
+    if (memory_limit > 0 && resident_memory() > memory_limit / 10 * 8) full = true;
+    return full.load();
+  };
+  session.start();
+  auto told = Clock::now() - std::chrono::hours(1);
+  while (!session.wait(40)) {
+    if (report_.seconds.first_image == 0 && session.snapshot()) report_.seconds.first_image = since(start_);
+    if (stop_asked()) session.cancel();
+    // What remains of the time is for gathering and writing.
+    if (time_left() < 0.3 * options_.time_limit.value_or(0)) {
+      out_of_time_ = true;
+      session.cancel();
+    }
+    if (since(told) > 0.5) {
+      told = Clock::now();
+      const SolveProgress now = session.progress();
+      const double elapsed = since(begin);
+      const double remaining = now.share > 0.02 ? elapsed * (1 - now.share) / now.share * 1.3 : -1;
+      tell("solve", 0.05 + 0.65 * now.share, static_cast<double>(now.rays) / std::max(1e-3, elapsed), now.error_estimate,
+           remaining);
+    }
+  }
+  if (report_.seconds.first_image == 0 && session.snapshot()) report_.seconds.first_image = since(start_);
+  if (stop_asked()) cancelled_ = true;
+  out_of_memory_ = full;
+  report_.seconds.solve = since(begin);
+  if (out_of_memory_) report_.warnings.push_back("stopped refining at the memory limit");
+  if (out_of_time_) report_.warnings.push_back("stopped refining at the time limit");
+  return Nothing{};
+}
+
+void Bake::reconstruct_light() {
+  tell("reconstruct", 0.7);
+  const auto begin = Clock::now();
+  ReconstructOptions options = effort_for(options_.quality).reconstruct;
+  if (cancelled_) options.method = Reconstruction::kAverage;
+  ReconstructStats stats;
+  CancelToken stop;
+  std::atomic<bool> done{false};
+  std::thread work([&] {
+    lighting_ = reconstruct(*solver_, options, stop, stats);
+    done = true;
+  });
+  auto told = Clock::now();
+  while (!done) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (stop_asked() || time_left() < 0.1 * options_.time_limit.value_or(0)) stop.cancel();
+    if (since(told) < 0.5) continue;
+    told = Clock::now();
+    tell("reconstruct", 0.8);
+  }
+  work.join();
+  lighting_.revision = 1;
+  report_.solver.reconstruct_rays = stats.rays.rays;
+  report_.seconds.reconstruct = since(begin);
+}
+
+void Bake::finish_report() {
+  const SolveStats& stats = solver_->stats();
+  report_.solver.elements = solver_->pool().count_by_kind();
+  report_.solver.links = solver_->links().all().size();
+  report_.solver.rays = stats.rays.rays;
+  report_.solver.ray_time_share =
+      std::min(1.0, static_cast<double>(stats.rays.nanoseconds) * 1e-9 / std::max(1e-9, report_.seconds.solve * report_.threads));
+  report_.solver.iterations = stats.iterations;
+  report_.solver.epsilon = stats.epsilon;
+  report_.solver.error_estimate = stats.error_estimate;
+  report_.converged = stats.converged && !stats.limited;
+  if (!cancelled_) report_.power = measure_power(*solver_, 400000, static_cast<uint32_t>(options_.seed));
+}
+
+Status Bake::write() {
+  tell("write", 0.95);
+  const auto begin = Clock::now();
+  finish_report();
+  for (const std::string& file : options_.outputs) {
+    if (const Status status = write_one(file); !status) return status.error();
+    result_.written.push_back(file);
+  }
+  report_.seconds.write = since(begin);
+  report_.seconds.total = since(start_);
+  report_.peak_memory_bytes = peak_memory();
+  result_.json = report_.json();
+  result_.warnings = report_.warnings;
+  result_.summary = summary();
+  if (!options_.report_file.empty())
+    if (const Status status = write_file_atomically(options_.report_file, as_bytes(result_.json)); !status) return status.error();
+  tell("write", 1);
+  return Nothing{};
+}
+
+Status Bake::write_one(const std::string& file) {
+  const std::string extension = file_extension(file);
+  if (extension == ".gold") {
+    // Without times and peaks, so that the same bake gives the same bytes.
+    BakeReport stable = report_;
+    stable.seconds = {};
+    stable.peak_memory_bytes = stable.preprocess_bytes = stable.ray_bvh_bytes = 0;
+    stable.solver.ray_time_share = 0;
+    stable.threads = 0;
+    return write_solution(file, Solution{stable.json(), scene_, lighting_});
+  }
+  if (extension == ".png" || extension == ".exr") {
+    PreviewOptions preview;
+    preview.width = options_.picture_width;
+    preview.height = options_.picture_height;
+    FloatImage picture = render_preview(scene_, lighting_, preview);
+    if (extension == ".exr") return write_exr(file, picture);
+    const ToneMap map = choose_tone_map(picture.pixels, 0.18f, static_cast<float>(options_.exposure));
+    for (vec3& pixel : picture.pixels) pixel = map(pixel);
+    return write_png(file, picture);
+  }
+  SceneWriteOptions write_options;
+  write_options.mode = options_.mode;
+  if (options_.mode == OutputMode::kUnlit) write_options.exposure = unlit_exposure(scene_, lighting_, static_cast<float>(options_.exposure));
+  return write_lit_scene(file, scene_, lighting_, write_options);
+}
+
+std::string Bake::summary() const {
+  char text[256];
+  std::snprintf(text, sizeof text, "%llu triangles, %llu links, %.1f Mrays, %.1f s (solve %.1f s); power residual %.2f%%",
+                static_cast<unsigned long long>(report_.scene.triangles), static_cast<unsigned long long>(report_.solver.links),
+                static_cast<double>(report_.solver.rays + report_.solver.reconstruct_rays) * 1e-6, report_.seconds.total,
+                report_.seconds.solve, 100 * report_.power.residual / std::max(1e-30, report_.power.emitted));
+  return text;
+}
+
+}  // namespace
+
+Result<BakeResult> bake(const BakeOptions& options, const BakeListener& listener) {
+  try {
+    Bake job(options, listener);
+    return job.run();
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::kLimit, "ran out of memory", options.input, {}, "try --quality draft or a smaller scene"};
+  }
+}
+
+}  // namespace goldthread

@@ -1,0 +1,92 @@
+#include "session/light_setup.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+
+#include "base/rng.h"
+#include "math/colour.h"
+
+namespace goldthread {
+
+void add_requested_lights(Scene& scene, const BakeOptions& options) {
+  if (options.sky) scene.sky.radiance = {(*options.sky)[0], (*options.sky)[1], (*options.sky)[2]};
+  if (!options.sun) return;
+  const float elevation = options.sun->elevation * kPi / 180, azimuth = options.sun->azimuth * kPi / 180;
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::kDirectional;
+  sun.intensity = vec3(options.sun->illuminance);
+  sun.direction = -vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation), -std::cos(elevation) * std::cos(azimuth));
+  scene.lights.push_back(sun);
+}
+
+uint64_t count_emitters(const SurfaceSet& surfaces) {
+  uint64_t count = 0;
+  for (const Part& part : surfaces.parts)
+    if (luminance(part.exitance) > 0 && !surfaces.tree(part).mesh.triangles.empty()) ++count;
+  return count;
+}
+
+bool has_light(const SurfaceSet& surfaces) {
+  if (surfaces.scene->sky.present() || count_emitters(surfaces) > 0) return true;
+  for (const Light& light : surfaces.scene->lights)
+    if (luminance(light.intensity) > 0) return true;
+  return false;
+}
+
+std::vector<std::string> describe_problems(const SurfaceSet& surfaces) {
+  std::vector<std::string> lines;
+  if (surfaces.skipped.degenerate > 0)
+    lines.push_back(fmt::format("{} degenerate triangles without area were skipped", surfaces.skipped.degenerate));
+  if (surfaces.skipped.not_finite > 0)
+    lines.push_back(fmt::format("{} triangles with corners that are not finite were skipped", surfaces.skipped.not_finite));
+  if (surfaces.clamped_materials > 0)
+    lines.push_back(fmt::format("{} materials reflect more than {} and were clamped to that", surfaces.clamped_materials,
+                                kMaxReflectance));
+  return lines;
+}
+
+bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces) {
+  const Part& part = part_of_triangle(surfaces, triangle);
+  const float alpha = alpha_at(surfaces, part, triangle - part.first_triangle, weights);
+  if (alpha >= 1) return false;
+  if (alpha <= 0) return true;
+  const uint32_t a = hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
+  const uint32_t b = hash(std::bit_cast<uint32_t>(ray.origin.x) ^ triangle, std::bit_cast<uint32_t>(ray.origin.z));
+  return unit_float(hash(a, b)) >= alpha;
+}
+
+float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) {
+  if (asked > 0) return asked;
+  double sum = 0, count = 0;
+  for (const LitPrimitive& lit : lighting.primitives) {
+    const Mesh& mesh = scene.meshes[scene.instances[lit.instance].mesh];
+    const Material& material = scene.materials[mesh.primitives[lit.primitive].material];
+    const vec3 reflectance = material.base_colour * (1 - material.metallic);
+    for (const vec3& e : lit.irradiance) {
+      const float nits = luminance(reflectance * e) / kPi;
+      if (!(nits > 0)) continue;
+      sum += std::log(static_cast<double>(nits));
+      count += 1;
+    }
+  }
+  // A little above middle grey: COLOR_0 cannot go past 1, but is seldom near it.
+  return count > 0 ? static_cast<float>(0.25 / std::exp(sum / count)) : 1.0f;
+}
+
+uint64_t memory_bytes(const SurfaceSet& surfaces) {
+  uint64_t bytes = 0;
+  for (const FaceClusterTree& tree : surfaces.trees)
+    bytes += tree.nodes.capacity() * sizeof(FaceCluster) + tree.roots.capacity() * sizeof(ClusterRef) +
+             tree.mesh.positions.capacity() * sizeof(vec3) + tree.mesh.triangles.capacity() * sizeof(UVec3) +
+             tree.mesh.source_triangles.capacity() * sizeof(uint32_t);
+  for (const Part& part : surfaces.parts)
+    bytes += sizeof(Part) + part.positions.capacity() * sizeof(vec3) +
+             (part.triangle_reflectance.capacity() + part.triangle_exitance.capacity()) * sizeof(vec3) +
+             part.triangle_coverage.capacity() * sizeof(float);
+  return bytes + surfaces.surfaces.capacity() * sizeof(Surface);
+}
+
+}  // namespace goldthread

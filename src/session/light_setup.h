@@ -1,0 +1,37 @@
+// The lights a user asks for, and what is worth warning about before any light is computed.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "element/surface_set.h"
+#include "goldthread/bake.h"
+#include "scene/lighting.h"
+#include "visibility/ray_caster.h"
+
+namespace goldthread {
+
+/// Adds --sky and --sun to the scene.
+void add_requested_lights(Scene& scene, const BakeOptions& options);
+
+/// Whether anything gives light: a surface, a lamp, or the sky.
+bool has_light(const SurfaceSet& surfaces);
+/// Parts that emit.
+uint64_t count_emitters(const SurfaceSet& surfaces);
+
+/// Turns shells wound inside out (mesh/orient); returns a line that says how many, empty for none.
+std::string fix_scene_normals(Scene& scene);
+
+/// What was skipped or clamped, a line each.
+std::vector<std::string> describe_problems(const SurfaceSet& surfaces);
+
+/// Whether a ray goes through a triangle at a point: always where a mask has a hole, by chance where it is blended; the
+/// chance is a hash of the ray, so that it is the same every time.
+bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces);
+
+/// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle grey.
+float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);
+
+/// Bytes of hierarchies and placed geometry.
+uint64_t memory_bytes(const SurfaceSet& surfaces);
+
+}  // namespace goldthread

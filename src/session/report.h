@@ -1,0 +1,44 @@
+// The figures of a bake, and their JSON (design.md section 9).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "session/power_balance.h"
+
+namespace goldthread {
+
+struct BakeReport {
+  struct {
+    uint64_t triangles = 0, surfaces = 0, face_clusters = 0, volume_clusters = 0, lights = 0;
+    double area_m2 = 0;
+  } scene;
+  struct {
+    double load = 0, preprocess = 0, face_clusters = 0, volume_clusters = 0, ray_bvh = 0, first_image = 0, solve = 0,
+           reconstruct = 0, represent = 0, write = 0, total = 0;
+  } seconds;
+  uint64_t peak_memory_bytes = 0;
+  uint64_t preprocess_bytes = 0;   ///< hierarchies and placed geometry, without Embree
+  uint64_t ray_bvh_bytes = 0;
+  struct {
+    std::array<uint64_t, 4> elements{};  ///< volume, face, patch, light
+    uint64_t links = 0, rays = 0, reconstruct_rays = 0;
+    double ray_time_share = 0;
+    uint64_t iterations = 0;
+    double epsilon = 0, error_estimate = 0;
+  } solver;
+  PowerBalance power;
+  int threads = 1;
+  std::vector<std::string> warnings;
+  bool converged = false;
+
+  std::string json() const;
+};
+
+/// The most resident memory this process has had, bytes.
+uint64_t peak_memory();
+/// What it has now.
+uint64_t resident_memory();
+
+}  // namespace goldthread

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include <algorithm>
 #include <cstring>
 
 #include "files/gltf_read_container.h"
+#include "files/gltf_read_values.h"
 
 namespace goldthread {
 namespace {
@@ -99,6 +100,8 @@ struct ElementLayout {
 AccessorReader::AccessorReader(const tinygltf::Model& model, const std::string& file)
     : model_(model), file_(file), left_(size_t(1) << 30) {
   for (const tinygltf::Buffer& buffer : model.buffers) left_ += 4096 * buffer.data.size();
+  for (const std::string& name : model.extensionsRequired)
+    if (!is_known_extension(name)) unknown_ = name;
 }
 
 Status AccessorReader::spend(size_t bytes, const std::string& place) {
@@ -201,11 +204,9 @@ Result<std::vector<T>> AccessorReader::read(int index, int expected, Convert con
   if (accessor.bufferView >= 0) {
     raw = locate(accessor.bufferView, accessor.byteOffset, layout.size(), accessor.count, false, place);
     if (!raw) return raw.error();
-  } else if (!accessor.sparse.isSparse && !model_.extensionsRequired.empty()) {
-    return bad_input(
-        file_, place,
-        fmt::format("it holds no data of its own; the file requires {}", model_.extensionsRequired.front()),
-        "export the file again, without that extension");
+  } else if (!accessor.sparse.isSparse && !unknown_.empty()) {
+    return bad_input(file_, place, fmt::format("it holds no data of its own; the file requires {}", unknown_),
+                     "export the file again, without that extension");
   }
   if (accessor.count > left_ / (layout.components * sizeof(T))) return spend(SIZE_MAX, place).error();
   const size_t total = accessor.count * layout.components;

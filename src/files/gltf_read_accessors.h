@@ -61,7 +61,8 @@ class AccessorReader {
 
   const tinygltf::Model& model_;
   const std::string& file_;
-  size_t left_;  ///< bytes that may still be handed out
+  std::string unknown_;  ///< a required extension that may be where data without bufferView is
+  size_t left_;          ///< bytes that may still be handed out
 };
 
 }  // namespace goldthread

@@ -1,13 +1,25 @@
 // Members of glTF extension objects, as tinygltf keeps them, with defaults for what is absent or of another
 // type.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "files/gltf_load.h"
 #include "math/vec.h"
 
 namespace goldthread {
+
+/// Whether a file may require this extension without our having to say anything: it is read, or it changes
+/// nothing about diffuse light. Compression is undone before anyone asks.
+inline bool is_known_extension(std::string_view name) {
+  constexpr std::array<std::string_view, 8> known = {
+      "KHR_mesh_quantization", "KHR_texture_transform",   "KHR_lights_punctual", "KHR_texture_basisu",
+      "EXT_texture_webp",      "EXT_mesh_gpu_instancing", "KHR_xmp_json_ld",     "KHR_animation_pointer"};
+  return name.starts_with("KHR_materials_") || std::find(known.begin(), known.end(), name) != known.end();
+}
 
 /// The extension object `name`, or null.
 inline const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, const char* name) {

@@ -1,0 +1,48 @@
+#include "files/scene_read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "files/gltf_read.h"
+#include "files/gltf_read_container.h"
+#include "files/mesh_read.h"
+
+namespace goldthread {
+namespace {
+
+std::string lower_extension(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// A GLB under any name is one.
+bool starts_like_glb(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  char magic[4] = {};
+  stream.read(magic, sizeof(magic));
+  return stream && std::memcmp(magic, "glTF", 4) == 0;
+}
+
+}  // namespace
+
+Result<Scene> read_scene(const std::string& file) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(file, ignored);
+  if (!std::filesystem::exists(kind))
+    return bad_input(file, "", "cannot open: no such file", "check the path");
+  const std::string extension = lower_extension(file);
+  if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
+  if (std::filesystem::is_regular_file(kind) && starts_like_glb(file)) return read_gltf(file);
+  for (const char* known : {".obj", ".ply", ".stl", ".fbx", ".dae"})
+    if (extension == known) return read_mesh_file(file);
+  return bad_input(file, "", fmt::format("the extension \"{}\" is not supported", extension),
+                   "use .gltf, .glb, .obj, .ply, .stl, .fbx or .dae");
+}
+
+}  // namespace goldthread

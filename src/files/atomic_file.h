@@ -29,11 +29,12 @@ class AtomicFile {
 
   /// Where the bytes are until `commit`, for libraries that only write to a named file.
   const std::string& temporary_path() const { return temporary_; }
+  /// What to answer when such a library could not write there, by its errno.
+  Error failure(int error_number) const;
 
  private:
   AtomicFile() = default;
   void abandon() noexcept;
-  Error failure(int error_number) const;
 
   std::string target_;     ///< as the caller named it, for messages
   std::string resolved_;   ///< with symbolic links followed

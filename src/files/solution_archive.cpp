@@ -1,0 +1,195 @@
+#include "files/solution_archive.h"
+
+#include <bit>
+#include <concepts>
+#include <cstring>
+#include <type_traits>
+
+namespace goldthread {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the format is little-endian");
+
+/// Copied as it lies in memory.
+template <typename T>
+concept Plain =
+    (std::is_arithmetic_v<T> && !std::same_as<T, bool>) || std::same_as<T, vec2> || std::same_as<T, vec3> ||
+    std::same_as<T, vec4> || std::same_as<T, mat4> || std::same_as<T, UVec3> || std::same_as<T, VertexOrigin>;
+
+class Packer {
+ public:
+  std::vector<uint8_t> bytes;
+
+  template <typename... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+
+ private:
+  void raw(const void* data, size_t size) {
+    const auto* first = static_cast<const uint8_t*>(data);
+    bytes.insert(bytes.end(), first, first + size);
+  }
+  template <typename T>
+  void put(const T& value) {
+    if constexpr (Plain<T>) {
+      raw(&value, sizeof value);
+    } else if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
+      bytes.push_back(static_cast<uint8_t>(value));
+    } else {
+      fields(*this, value);
+    }
+  }
+  void put(const std::string& text) {
+    put(uint64_t{text.size()});
+    raw(text.data(), text.size());
+  }
+  template <typename T>
+  void put(const std::vector<T>& values) {
+    put(uint64_t{values.size()});
+    if constexpr (Plain<T>) {
+      raw(values.data(), values.size() * sizeof(T));
+    } else {
+      for (const T& value : values) put(value);
+    }
+  }
+};
+
+class Unpacker {
+ public:
+  explicit Unpacker(const std::vector<uint8_t>& bytes)
+      : at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+
+  bool finished() const { return !failed_ && at_ == end_; }
+
+  template <typename... T>
+  void operator()(T&... values) {
+    (take(values), ...);
+  }
+
+ private:
+  size_t left() const { return static_cast<size_t>(end_ - at_); }
+  void raw(void* data, size_t size) {
+    failed_ = failed_ || size > left();
+    if (failed_ || size == 0) return;
+    std::memcpy(data, at_, size);
+    at_ += size;
+  }
+  template <typename T>
+  void take(T& value) {
+    if constexpr (Plain<T>) {
+      raw(&value, sizeof value);
+    } else if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
+      uint8_t byte = 0;
+      raw(&byte, 1);
+      value = static_cast<T>(byte);
+    } else {
+      fields(*this, value);
+    }
+  }
+  void take(std::string& text) {
+    uint64_t size = 0;
+    take(size);
+    if (!fits(size, 1)) return;
+    text.resize(size);
+    raw(text.data(), size);
+  }
+  template <typename T>
+  void take(std::vector<T>& values) {
+    uint64_t count = 0;
+    take(count);
+    if constexpr (Plain<T>) {
+      if (!fits(count, sizeof(T))) return;
+      values.resize(count);
+      raw(values.data(), count * sizeof(T));
+    } else {  // grown as they come: a false count ends with the bytes
+      for (uint64_t i = 0; i < count && !failed_; ++i) take(values.emplace_back());
+    }
+  }
+  bool fits(uint64_t count, size_t size) {
+    failed_ = failed_ || count > left() / size;
+    return !failed_;
+  }
+
+  const uint8_t* at_;
+  const uint8_t* end_;
+  bool failed_ = false;
+};
+
+template <typename V, typename T>
+concept Is = std::same_as<std::remove_const_t<V>, T>;
+
+// One list of members serves both ways, so that they cannot disagree.
+template <typename A, Is<Texture> V>
+void fields(A& a, V& v) {
+  a(v.image, v.texcoord, v.wrap_u, v.wrap_v, v.offset, v.scale, v.rotation);
+}
+template <typename A, Is<Material> V>
+void fields(A& a, V& v) {
+  a(v.name, v.base_colour, v.alpha, v.base_colour_texture, v.metallic, v.metallic_texture, v.emission,
+    v.emission_texture, v.alpha_mode, v.alpha_cutoff, v.double_sided, v.unlit);
+}
+template <typename A, Is<Image> V>
+void fields(A& a, V& v) {
+  a(v.name, v.width, v.height, v.rgba);
+}
+template <typename A, Is<Primitive> V>
+void fields(A& a, V& v) {
+  a(v.positions, v.normals, v.texcoords[0], v.texcoords[1], v.colours, v.indices, v.material,
+    v.source_primitive);
+}
+template <typename A, Is<Mesh> V>
+void fields(A& a, V& v) {
+  a(v.name, v.primitives);
+}
+template <typename A, Is<Instance> V>
+void fields(A& a, V& v) {
+  a(v.name, v.mesh, v.transform, v.source_node);
+}
+template <typename A, Is<Light> V>
+void fields(A& a, V& v) {
+  a(v.name, v.kind, v.intensity, v.position, v.direction, v.inner_cone, v.outer_cone, v.range);
+}
+template <typename A, Is<Camera> V>
+void fields(A& a, V& v) {
+  a(v.name, v.position, v.forward, v.up, v.vertical_fov, v.orthographic_height, v.aspect);
+}
+template <typename A, Is<LitPrimitive> V>
+void fields(A& a, V& v) {
+  a(v.instance, v.primitive, v.source_mesh, v.origins, v.faces, v.face_parents, v.irradiance,
+    v.irradiance_back);
+}
+
+template <typename A, Is<Solution> V>
+bool visit_section(A& a, V& solution, const std::string& name) {
+  auto& scene = solution.scene;
+  if (name == "report") return a(solution.report_json), true;
+  if (name == "scene") return a(scene.file, scene.sky.radiance, scene.warnings), true;
+  if (name == "images") return a(scene.images), true;
+  if (name == "materials") return a(scene.materials), true;
+  if (name == "meshes") return a(scene.meshes), true;
+  if (name == "instances") return a(scene.instances), true;
+  if (name == "lights") return a(scene.lights), true;
+  if (name == "cameras") return a(scene.cameras), true;
+  if (name == "lighting") return a(solution.lighting.revision, solution.lighting.primitives), true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> section_names() {
+  return {"report", "scene", "images", "materials", "meshes", "instances", "lights", "cameras", "lighting"};
+}
+
+std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {
+  Packer packer;
+  visit_section(packer, solution, name);
+  return std::move(packer.bytes);
+}
+
+bool unpack_section(Solution& solution, const std::string& name, const std::vector<uint8_t>& bytes) {
+  Unpacker unpacker(bytes);
+  return visit_section(unpacker, solution, name) && unpacker.finished();
+}
+
+}  // namespace goldthread

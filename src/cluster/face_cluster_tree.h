@@ -39,11 +39,12 @@ struct FaceClusterTree {
 };
 
 struct FaceClusterOptions {
-  float balance = 0.001f;  ///< k of equation 4.8: larger trades planarity for balance. At least 1e-6
-  uint32_t region_triangles =
-      8192;  ///< components above this are first clustered in regions of this size, in parallel
-  uint32_t region_reduction =
-      32;  ///< a region is clustered down to 1/this of its triangles before the final pass
+  /// k of equation 4.8: larger trades planarity for balance. Has no unit: see merge_cost(). Taken as 1e-6 at least.
+  float balance = 0.001f;
+  /// Components above this are first clustered in regions of at most this size, in parallel.
+  uint32_t region_triangles = 8192;
+  /// A region is clustered down to 1/this of its triangles before the final pass over its component.
+  uint32_t region_reduction = 32;
 };
 
 /// Clusters each connected component of `mesh` (adjacency by welded position) bottom up by the quadric cost

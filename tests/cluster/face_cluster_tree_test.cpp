@@ -131,7 +131,8 @@ TEST(FaceClusterTree, TheSameForAnyNumberOfThreads) {
   }
 }
 
-/// Work is counted in costs computed, not in seconds: greedy collapse needs a few a triangle whatever the shape.
+/// Work is counted in costs computed, not in seconds: greedy collapse needs a few a triangle whatever the
+/// shape.
 void expect_linear_work(const shapes::Soup& soup, const FaceClusterOptions& options, uint32_t deepest) {
   const TriangleMesh mesh = soup.weld();
   EXPECT_LE(merge_triangles(mesh, options).costs_computed, 16 * mesh.triangles.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace goldthread::procedural {
 namespace {
@@ -24,20 +25,22 @@ uint32_t triangle_vertex(uint32_t first, int i, int j) {
   return first + static_cast<uint32_t>(i * (i + 1) / 2 + j);
 }
 
-/// Vertex numbers of a grid; `wrap` joins the last column to the first.
+/// Vertex numbers of a grid; wrapping joins its last column to the first, or its last row.
 struct Grid {
   uint32_t first = 0;
-  int columns = 0;
-  bool wrap = false;
+  int columns = 0, rows = 0;
+  bool wrap_columns = false, wrap_rows = false;
 
+  int stored_columns() const { return wrap_columns ? columns : columns + 1; }
+  int stored_rows() const { return wrap_rows ? rows : rows + 1; }
   uint32_t operator()(int i, int j) const {
-    const int stored = wrap ? columns : columns + 1;
-    return first + static_cast<uint32_t>(j * stored + (wrap ? i % columns : i));
+    const int column = wrap_columns ? i % columns : i, row = wrap_rows ? j % rows : j;
+    return first + static_cast<uint32_t>(row * stored_columns() + column);
   }
 };
 
-void add_grid_faces(Primitive& out, const Grid& grid, int rows, bool flip) {
-  for (int j = 0; j < rows; ++j) {
+void add_grid_faces(Primitive& out, const Grid& grid, bool flip) {
+  for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const uint32_t a = grid(i, j), b = grid(i + 1, j), c = grid(i + 1, j + 1), d = grid(i, j + 1);
       add_face(out, a, flip ? c : b, flip ? b : c);
@@ -73,12 +76,12 @@ void add_quad(Primitive& out, const std::array<dvec3, 4>& corners, int rate) {
 
 void add_grid(Primitive& out, const dvec3& corner, const dvec3& across, const dvec3& up, int columns,
               int rows) {
-  const Grid grid{next_vertex(out), columns, false};
+  const Grid grid{next_vertex(out), columns, rows};
   const dvec3 normal = normalize(cross(across, up));
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= columns; ++i)
       add_vertex(out, corner + across * (double(i) / columns) + up * (double(j) / rows), normal);
-  add_grid_faces(out, grid, rows, false);
+  add_grid_faces(out, grid, false);
 }
 
 void add_box(Primitive& out, const dvec3& low, const dvec3& high, int rate, Facing facing) {
@@ -105,7 +108,8 @@ dvec3 surface_normal(const Surface& surface, double u, double v) {
   constexpr double kStep = 1e-5;
   const double u0 = surface.closed_u ? u - kStep : std::max(0.0, u - kStep);
   const double u1 = surface.closed_u ? u + kStep : std::min(1.0, u + kStep);
-  const double v0 = std::max(0.0, v - kStep), v1 = std::min(1.0, v + kStep);
+  const double v0 = surface.closed_v ? v - kStep : std::max(0.0, v - kStep);
+  const double v1 = surface.closed_v ? v + kStep : std::min(1.0, v + kStep);
   const dvec3 along_u = surface.point(u1, v) - surface.point(u0, v);
   const dvec3 along_v = surface.point(u, v1) - surface.point(u, v0);
   const dvec3 normal = normalize(cross(along_u, along_v));
@@ -113,15 +117,14 @@ dvec3 surface_normal(const Surface& surface, double u, double v) {
 }
 
 void add_surface(Primitive& out, const Surface& surface, int columns, int rows) {
-  const Grid grid{next_vertex(out), columns, surface.closed_u};
-  const int stored = surface.closed_u ? columns : columns + 1;
-  for (int j = 0; j <= rows; ++j) {
-    for (int i = 0; i < stored; ++i) {
+  const Grid grid{next_vertex(out), columns, rows, surface.closed_u, surface.closed_v};
+  for (int j = 0; j < grid.stored_rows(); ++j) {
+    for (int i = 0; i < grid.stored_columns(); ++i) {
       const double u = double(i) / columns, v = double(j) / rows;
       add_vertex(out, surface.point(u, v), surface_normal(surface, u, v));
     }
   }
-  add_grid_faces(out, grid, rows, surface.flip);
+  add_grid_faces(out, grid, surface.flip);
 }
 
 Surface ring(const dvec3& centre, const dvec3& x, const dvec3& y, double inner, double outer) {
@@ -129,7 +132,7 @@ Surface ring(const dvec3& centre, const dvec3& x, const dvec3& y, double inner, 
     const double angle = 2 * double(kPi) * u, radius = outer + (inner - outer) * v;
     return centre + radius * (std::cos(angle) * x + std::sin(angle) * y);
   };
-  return {point, true, false};
+  return {point, true, false, false};
 }
 
 Surface tube(const dvec3& a, const dvec3& b, double radius) {
@@ -140,7 +143,7 @@ Surface tube(const dvec3& a, const dvec3& b, double radius) {
     const double angle = 2 * double(kPi) * u;
     return a + v * (b - a) + radius * (std::cos(angle) * x + std::sin(angle) * y);
   };
-  return {point, true, false};
+  return {point, true, false, false};
 }
 
 void append(Primitive& out, const Primitive& part) {
@@ -150,9 +153,9 @@ void append(Primitive& out, const Primitive& part) {
   for (uint32_t index : part.indices) out.indices.push_back(first + index);
 }
 
-uint32_t add_material(Scene& scene, const char* name, const vec3& reflectance, const vec3& emission) {
+uint32_t add_material(Scene& scene, std::string name, const vec3& reflectance, const vec3& emission) {
   Material material;
-  material.name = name;
+  material.name = std::move(name);
   material.base_colour = reflectance;
   material.metallic = 0;
   material.emission = emission;
@@ -160,23 +163,23 @@ uint32_t add_material(Scene& scene, const char* name, const vec3& reflectance, c
   return static_cast<uint32_t>(scene.materials.size() - 1);
 }
 
-uint32_t add_object(Scene& scene, const char* name, Primitive primitive, uint32_t material) {
+uint32_t add_object(Scene& scene, std::string name, Primitive primitive, uint32_t material) {
   primitive.material = material;
   Mesh mesh;
   mesh.name = name;
   mesh.primitives.push_back(std::move(primitive));
   scene.meshes.push_back(std::move(mesh));
   const auto index = static_cast<uint32_t>(scene.meshes.size() - 1);
-  add_instance(scene, index, name, mat4(1));
+  add_instance(scene, index, std::move(name), mat4(1));
   return index;
 }
 
-void add_instance(Scene& scene, uint32_t mesh, const char* name, const mat4& transform) {
+void add_instance(Scene& scene, uint32_t mesh, std::string name, const mat4& transform) {
   Instance instance;
   instance.mesh = mesh;
   instance.transform = transform;
   instance.source_node = static_cast<uint32_t>(scene.instances.size());
-  instance.name = name;
+  instance.name = std::move(name);
   scene.instances.push_back(std::move(instance));
 }
 

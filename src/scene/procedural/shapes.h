@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <string>
 
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -33,6 +34,7 @@ void add_box(Primitive& out, const dvec3& low, const dvec3& high, int rate = 1,
 struct Surface {
   std::function<dvec3(double u, double v)> point;
   bool closed_u = false;  ///< point(1, v) is point(0, v): the seam is shared
+  bool closed_v = false;  ///< point(u, 1) is point(u, 0)
   bool flip = false;      ///< the front is that of -cross(dp/du, dp/dv)
 };
 
@@ -51,13 +53,13 @@ Surface tube(const dvec3& a, const dvec3& b, double radius);
 void append(Primitive& out, const Primitive& part);
 
 /// Adds a diffuse material (metallic 0) and returns its index. `emission` in nits.
-uint32_t add_material(Scene& scene, const char* name, const vec3& reflectance,
+uint32_t add_material(Scene& scene, std::string name, const vec3& reflectance,
                       const vec3& emission = vec3(0));
 
 /// Adds a mesh of one primitive with an instance that stands where it is; returns the mesh.
-uint32_t add_object(Scene& scene, const char* name, Primitive primitive, uint32_t material);
+uint32_t add_object(Scene& scene, std::string name, Primitive primitive, uint32_t material);
 /// Adds another instance of a mesh.
-void add_instance(Scene& scene, uint32_t mesh, const char* name, const mat4& transform);
+void add_instance(Scene& scene, uint32_t mesh, std::string name, const mat4& transform);
 
 /// Adds a perspective camera that looks from `position` to `target`; the field of view in degrees.
 void add_camera(Scene& scene, const vec3& position, const vec3& target, float vertical_degrees, float aspect);

@@ -110,13 +110,18 @@ void DualMerger::remove_edge(uint32_t edge) {
   drop_link(edges_[edge].end[1], 2 * edge + 1);
 }
 
-void DualMerger::update_cost(uint32_t edge) {
-  Edge& e = edges_[edge];
-  const uint32_t a = e.end[0], b = e.end[1];
-  e.stamp = clusters_[a].version + clusters_[b].version;
-  ++costs_computed_;
-  const float cost = merge_cost(shapes_[a], shapes_[b], e.shared, balance_);
-  costs_.set(edge, cost);
+/// Costs first, then the tournament: its branches go any way, and would hold up the long chains of
+/// arithmetic, of which the processor can otherwise work on several at once.
+void DualMerger::update_costs(std::span<const uint32_t> edges) {
+  new_costs_.resize(edges.size());
+  for (size_t i = 0; i < edges.size(); ++i) {
+    Edge& e = edges_[edges[i]];
+    const uint32_t a = e.end[0], b = e.end[1];
+    e.stamp = clusters_[a].version + clusters_[b].version;
+    new_costs_[i] = merge_cost(shapes_[a], shapes_[b], e.shared, balance_);
+  }
+  for (size_t i = 0; i < edges.size(); ++i) costs_.set(edges[i], new_costs_[i]);
+  costs_computed_ += edges.size();
 }
 
 void DualMerger::run(float balance, size_t target, ClusterRef first_name, std::vector<Merge>& merges) {
@@ -139,7 +144,7 @@ void DualMerger::run(float balance, size_t target, ClusterRef first_name, std::v
     const Edge& e = edges_[edge];
     const Cluster &a = clusters_[e.end[0]], &b = clusters_[e.end[1]];
     if (e.stamp != a.version + b.version) {
-      update_cost(edge);
+      update_costs({&edge, 1});
       continue;
     }
     merges.push_back({{a.name, b.name}, a.count + b.count});
@@ -184,10 +189,12 @@ void DualMerger::move_edges(uint32_t into, uint32_t from) {
     costs_.set(link / 2, CostTournament::kOut);
     drop_link(neighbour, link ^ 1);
   }
+  touched_.clear();
   for (uint32_t link = clusters_[into].first_link; link != kNone; link = next_of(link)) {
     edge_to_[other_end(link)] = kNone;
-    update_cost(link / 2);
+    touched_.push_back(link / 2);
   }
+  update_costs(touched_);
 }
 
 /// The same for a hub, without a walk along its own edges: double ones are found from the neighbour's side,
@@ -215,7 +222,7 @@ void DualMerger::move_edges_to_hub(uint32_t into, uint32_t from) {
     drop_link(neighbour, link ^ 1);
     touched_.push_back(twin);
   }
-  for (const uint32_t edge : touched_) update_cost(edge);
+  update_costs(touched_);
 }
 
 /// Entries of clusters that have been absorbed stay in the map: nobody asks for them again.

@@ -1,6 +1,7 @@
 // Greedy collapse of dual edges (thesis 4.2.2) on one connected or unconnected set of clusters.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -104,7 +105,7 @@ class DualMerger {
   void push_link(uint32_t cluster, uint32_t link);
   void drop_link(uint32_t cluster, uint32_t link);
   void remove_edge(uint32_t edge);
-  void update_cost(uint32_t edge);
+  void update_costs(std::span<const uint32_t> edges);
   uint32_t collapse(uint32_t edge);
   void absorb(uint32_t into, uint32_t from, float shared);
   void move_edges(uint32_t into, uint32_t from);
@@ -117,7 +118,8 @@ class DualMerger {
   std::vector<Edge> edges_;
   CostTournament costs_;
   std::vector<uint32_t> edge_to_;  ///< per cluster: scratch of move_edges()
-  std::vector<uint32_t> touched_;  ///< scratch of move_edges_to_hub()
+  std::vector<uint32_t> touched_;  ///< scratch: edges whose cost has changed
+  std::vector<float> new_costs_;   ///< scratch of update_costs()
   std::unordered_map<uint64_t, uint32_t> hub_edges_;
   std::unordered_map<uint32_t, HubSize> hub_sizes_;  ///< as of their version
   float balance_ = 0;

@@ -74,18 +74,27 @@ void pair_vertex(const TriangleMesh& mesh, std::span<const uint32_t> half_edges,
 
 std::vector<uint32_t> find_twins(const TriangleMesh& mesh) {
   const size_t half_edges = mesh.triangles.size() * 3, vertices = mesh.positions.size();
-  // place[v + 1] counts, then becomes where v's list ends: after filling, where it begins is place[v].
+  // place[v + 2] counts, then place[v + 1] is where v's next half-edge goes: after filling, v's begin at
+  // place[v].
   std::vector<uint32_t> place(vertices + 2, 0);
   const auto add = [](uint32_t& value) {
     return std::atomic_ref(value).fetch_add(1, std::memory_order_relaxed);
   };
-  parallel_for(
-      half_edges, [&](size_t h) { add(place[ends_of(mesh, uint32_t(h)).low + 2]); }, kGrain);
+  const auto for_half_edges = [&](const auto& body) {  // body(half-edge, its lower vertex)
+    parallel_for(
+        mesh.triangles.size(),
+        [&](size_t t) {
+          const UVec3& v = mesh.triangles[t];
+          body(3 * t, std::min(v.x, v.y));
+          body(3 * t + 1, std::min(v.y, v.z));
+          body(3 * t + 2, std::min(v.z, v.x));
+        },
+        kGrain);
+  };
+  for_half_edges([&](size_t, uint32_t low) { add(place[low + 2]); });
   for (size_t v = 2; v < place.size(); ++v) place[v] += place[v - 1];
   std::vector<uint32_t> by_vertex(half_edges);
-  parallel_for(
-      half_edges, [&](size_t h) { by_vertex[add(place[ends_of(mesh, uint32_t(h)).low + 1])] = uint32_t(h); },
-      kGrain);
+  for_half_edges([&](size_t h, uint32_t low) { by_vertex[add(place[low + 1])] = uint32_t(h); });
   std::vector<uint32_t> twins(half_edges, kNoTwin);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices, kGrain / 4), [&](const auto& range) {
     std::vector<Spoke> spokes;

@@ -77,8 +77,8 @@ class ElementPool {
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
   void expand(std::span<const ElementId> ids);
 
-  /// Point i of up to kStoredSamples, spread evenly by area over the element's real triangles.
-  SurfacePoint sample(ElementId id, uint32_t i) const;
+  /// Point i of `count` (1, 2, 4, 8 or 16) that are spread evenly by area over the element's real triangles.
+  SurfacePoint sample(ElementId id, uint32_t i, uint32_t count = kStoredSamples) const;
   /// Any point: u selects by area, v moves within. For more samples than are stored.
   SurfacePoint sample_at(ElementId id, float u, float v) const;
   /// A direction within a sky element.

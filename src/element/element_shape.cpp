@@ -171,12 +171,15 @@ void ElementPool::fill_samples(ElementId id) {
   }
 }
 
-SurfacePoint ElementPool::sample(ElementId id, uint32_t i) const {
+SurfacePoint ElementPool::sample(ElementId id, uint32_t i, uint32_t count) const {
   const Element& element = elements_[id];
   if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster)
-    return samples_[element.samples + i % kStoredSamples];
-  const UnitSquarePoint p = r2_point(i, id);
-  return sample_at(id, p.u, p.v);
+    return samples_[element.samples + (i * (kStoredSamples / count)) % kStoredSamples];
+  // The middles of a grid of equal areas: smooth transfers are met to second order, which random points are not.
+  const uint32_t columns = count >= 8 ? 4 : count >= 2 ? 2 : 1, rows = std::max(1u, count / columns);
+  const float u = (static_cast<float>(i % columns) + 0.5f) / static_cast<float>(columns);
+  const float v = (static_cast<float>(i / columns % rows) + 0.5f) / static_cast<float>(rows);
+  return sample_at(id, u, v);
 }
 
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {

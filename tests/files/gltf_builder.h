@@ -24,8 +24,7 @@ inline std::string base64(const std::string& bytes) {
   for (size_t i = 0; i < bytes.size(); i += 3) {
     uint32_t bits = 0;
     for (size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+    for (size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
   }
   return out;
 }
@@ -40,9 +39,8 @@ class TempFolder {
  public:
   TempFolder() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            (std::string("goldthread_") + test->test_suite_name() + "_" + test->name() + "_" +
-             std::to_string(::getpid()));
+    path_ = std::filesystem::temp_directory_path() / (std::string("goldthread_") + test->test_suite_name() +
+                                                      "_" + test->name() + "_" + std::to_string(::getpid()));
     std::filesystem::create_directories(path_);
   }
   ~TempFolder() {
@@ -79,7 +77,9 @@ struct GltfBuilder {
 
   template <typename T>
   int accessor(const std::vector<T>& values, const char* type, int component, json more = json::object()) {
-    const size_t components = std::string(type) == "SCALAR" ? 1 : std::string(type) == "MAT4" ? 16 : size_t(type[3] - '0');
+    const size_t components = std::string(type) == "SCALAR" ? 1
+                              : std::string(type) == "MAT4" ? 16
+                                                            : size_t(type[3] - '0');
     more.update({{"bufferView", view(bytes_of(values))},
                  {"componentType", component},
                  {"count", values.size() / components},
@@ -100,14 +100,15 @@ struct GltfBuilder {
   /// One right triangle in the xy plane.
   json& triangle(json node = json::object()) {
     const int positions = vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    return mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices({0, 1, 2})}}, std::move(node));
+    return mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices({0, 1, 2})}},
+                std::move(node));
   }
 
   std::string text() const {
     json copy = doc;
     if (!bytes.empty() && !copy.contains("buffers"))
-      copy["buffers"] = json::array({{{"byteLength", bytes.size()},
-                                      {"uri", "data:application/octet-stream;base64," + base64(bytes)}}});
+      copy["buffers"] = json::array(
+          {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}});
     return copy.dump();
   }
 };

@@ -32,24 +32,20 @@ TEST_P(SharedScenes, HaveTheCountsOfTheirTable) {
   for (const std::string& warning : scene->warnings) std::cout << warning << "\n";
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, SharedScenes,
-                         ::testing::Values(SharedScene{"cornell-original", 36, 8, 1, 0},
-                                           SharedScene{"cornell-sphere", 2188, 8, 1, 0},
-                                           SharedScene{"sponza", 66450, 37, 0, 0},
-                                           SharedScene{"conference-lit", 124635, 44, 8, 0},
-                                           SharedScene{"bathroom", 380290, 853, 1, 0},
-                                           SharedScene{"small-house", 145844, 85, 0, 8},
-                                           SharedScene{"sportscar-room", 300617, 1082, 6, 0},
-                                           SharedScene{"engine-room", 121510, 41, 1, 0},
-                                           SharedScene{"chess-room", 178862, 15, 1, 0},
-                                           SharedScene{"house", 10497, 2, 0, 0},
-                                           SharedScene{"jpm", 20458, 8, 0, 0},
-                                           SharedScene{"as1-oc-214", 21556, 18, 0, 0}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Table, SharedScenes,
+    ::testing::Values(
+        SharedScene{"cornell-original", 36, 8, 1, 0}, SharedScene{"cornell-sphere", 2188, 8, 1, 0},
+        SharedScene{"sponza", 66450, 37, 0, 0}, SharedScene{"conference-lit", 124635, 44, 8, 0},
+        SharedScene{"bathroom", 380290, 853, 1, 0}, SharedScene{"small-house", 145844, 85, 0, 8},
+        SharedScene{"sportscar-room", 300617, 1082, 6, 0}, SharedScene{"engine-room", 121510, 41, 1, 0},
+        SharedScene{"chess-room", 178862, 15, 1, 0}, SharedScene{"house", 10497, 2, 0, 0},
+        SharedScene{"jpm", 20458, 8, 0, 0}, SharedScene{"as1-oc-214", 21556, 18, 0, 0}),
+    [](const auto& info) {
+      std::string name = info.param.name;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace goldthread

@@ -66,7 +66,7 @@ struct Sweep {
   RadiosityState& state;
   const std::vector<vec3>& old;  // radiosity before the sweep: the order of visits must not matter
 
-  // Returns the largest change of a leaf's reflected power below `id`.
+  // Returns by how much the reflected power of all leaves below `id` has changed, lm.
   float visit(ElementId id, const Octants& inherited) const {
     Octants octants = inherited;
     vec3 direct(0);
@@ -87,7 +87,7 @@ struct Sweep {
       right = visit(e.first_child + 1, octants);
     }
     pull(id, e);
-    return std::max(left, right);
+    return left + right;
   }
 
   float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct) const {

@@ -7,7 +7,8 @@ namespace goldthread {
 
 /// Gathers every link (equation 4.20), pushes irradiance vectors to the leaves (4.16), turns them into radiosity (4.21) and
 /// pulls averages up (4.17). Vectors are kept apart by octant of direction on the way down, so that two lamps on opposite
-/// sides of a cluster do not cancel. Returns the largest change of any leaf's power as a share of all power landing.
+/// sides of a cluster do not cancel. Returns the sum of the leaves' changes of reflected power as a share
+/// of all power landing.
 double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state);
 
 /// Irradiance times area (with coverage) over the leaves, lm.

@@ -47,7 +47,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   stats_.limited |= counters.limited;
   // The first steps only have to find where the light goes; the last has to settle.
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
-  sweep(last ? 400 : 3, last ? options_.settled : 100 * options_.settled, cancel);
+  sweep(last ? 400 : 3, last ? options_.settled : 30 * options_.settled, cancel);
   if (cancel.cancelled()) return false;
   stats_.epsilon = bound_;
   stats_.converged = last;

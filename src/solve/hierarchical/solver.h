@@ -17,7 +17,7 @@ struct SolveOptions {
   double last_error = 1e-5;    ///< the same in the last step
   double error_ratio = 0.25;   ///< each step's bound over the one before
   double least_area = 2.5e-5;  ///< receivers are not cut below this share of the scene's area
-  double settled = 2e-6;       ///< iterate until no element's reflected power changes by more than this share
+  double settled = 1e-4;       ///< iterate until a sweep changes reflected power by less than this share of landing light
   uint64_t most_links = 0;     ///< 0: no limit
 };
 

@@ -227,7 +227,15 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
       if ((blocked >> k & 1) == 0) seen += weight[k];
     }
   }
-  return all > 0 ? seen / all : 0.0f;
+  if (all > 0) return seen / all;
+  // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
+  if (e.kind == ElementKind::kSky) return 0;
+  const vec3 to_centre = e.centre - origin;
+  const float distance = length(to_centre);
+  if (distance <= 1.01f * e.radius) return 1;
+  Ray ray{origin, to_centre};
+  ray.far = 1 - 1.01f * e.radius / distance;
+  return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
 }
 
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
@@ -237,11 +245,10 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   link.source = source;
   const Element& r = pool[receiver];
   const bool volume = r.kind == ElementKind::kVolume;
-  const uint32_t stride = kStoredSamples / points;
   float low = std::numeric_limits<float>::max(), high = 0, seen = 0, weight = 0;
   uint32_t rays = 0, facing = 0;
   for (uint32_t i = 0; i < points; ++i) {
-    const SurfacePoint x = pool.sample(receiver, i * stride);
+    const SurfacePoint x = pool.sample(receiver, i, points);
     const vec3 m = point_transfer(pool, source, x.position, x.normal);
     float here = dot(m, x.normal);
     if (here <= 0) {

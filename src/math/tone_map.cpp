@@ -28,7 +28,7 @@ float percentile(std::vector<float>& values, double share) {
 vec3 ToneMap::operator()(const vec3& nits) const {
   const float before = luminance(nits);
   if (!(before > 0) || !std::isfinite(before)) return vec3(0);
-  const float scaled = scale * before;                                           // equation 2
+  const float scaled = std::min(scale * before, 1e18f);  // equation 2, kept from overflow
   const float display = scaled * (1 + scaled / (white * white)) / (1 + scaled);  // equation 4
   const vec3 colour = nits * (display / before);
   // Saturated colours leave the display's range before white does: dimmed as a whole, they keep their hue.

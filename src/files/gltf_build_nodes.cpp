@@ -1,6 +1,7 @@
 #include "files/gltf_build_nodes.h"
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>

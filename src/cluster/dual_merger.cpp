@@ -15,6 +15,18 @@ float merged_perimeter(const ClusterShape& a, const ClusterShape& b, float share
   return std::max(0.0f, a.perimeter + b.perimeter - 2 * shared);
 }
 
+/// Equation 4.8 with E_fit given. Rises with it, also as rounded.
+float cost_of_fit(const ClusterShape& a, const ClusterShape& b, float shared, float balance, float fit) {
+  const float area = a.area + b.area, perimeter = merged_perimeter(a, b, shared);
+  const float facing = std::max(length(a.summed_normal + b.summed_normal), kLeastFacing * area);
+  // The smallest normal float keeps a division of nothing by nothing, far below any real area, from making
+  // NaN.
+  const float cost =
+      (fit + balance * area) * (perimeter * perimeter) / std::max(facing, std::numeric_limits<float>::min());
+  // Overflow is still a cost: an infinite one would forbid the merge.
+  return cost < std::numeric_limits<float>::max() ? cost : std::numeric_limits<float>::max();
+}
+
 }  // namespace
 
 ClusterShape shape_of_triangle(const vec3& a, const vec3& b, const vec3& c) {
@@ -36,14 +48,11 @@ ClusterShape merged(const ClusterShape& a, const ClusterShape& b, float shared) 
 }
 
 float merge_cost(const ClusterShape& a, const ClusterShape& b, float shared, float balance) {
-  const float area = a.area + b.area, perimeter = merged_perimeter(a, b, shared);
-  const float facing = std::max(length(a.summed_normal + b.summed_normal), kLeastFacing * area);
-  // The smallest normal float keeps a division of nothing by nothing, far below any real area, from making
-  // NaN.
-  const float cost = (fit_error(merged(a.fit, b.fit)) + balance * area) * (perimeter * perimeter) /
-                     std::max(facing, std::numeric_limits<float>::min());
-  // Overflow is still a cost: an infinite one would forbid the merge.
-  return cost < std::numeric_limits<float>::max() ? cost : std::numeric_limits<float>::max();
+  return cost_of_fit(a, b, shared, balance, fit_error(merged(a.fit, b.fit)));
+}
+
+float least_merge_cost(const ClusterShape& a, const ClusterShape& b, float shared, float balance) {
+  return cost_of_fit(a, b, shared, balance, 0);
 }
 
 void DualMerger::clear() {
@@ -71,7 +80,7 @@ void DualMerger::add_boundary(uint32_t a, uint32_t b, float length) {
 
 void DualMerger::add_edge(uint32_t a, uint32_t b, float length) {
   const uint32_t edge = uint32_t(edges_.size());
-  edges_.push_back({{a, b}, {kNone, kNone}, {kNone, kNone}, length, 0});
+  edges_.push_back({{a, b}, {kNone, kNone}, {kNone, kNone}, length, kNone});
   push_link(a, 2 * edge);
   push_link(b, 2 * edge + 1);
 }
@@ -110,18 +119,26 @@ void DualMerger::remove_edge(uint32_t edge) {
   drop_link(edges_[edge].end[1], 2 * edge + 1);
 }
 
-/// Costs first, then the tournament: its branches go any way, and would hold up the long chains of
-/// arithmetic, of which the processor can otherwise work on several at once.
-void DualMerger::update_costs(std::span<const uint32_t> edges) {
-  new_costs_.resize(edges.size());
-  for (size_t i = 0; i < edges.size(); ++i) {
-    Edge& e = edges_[edges[i]];
-    const uint32_t a = e.end[0], b = e.end[1];
-    e.stamp = clusters_[a].version + clusters_[b].version;
-    new_costs_[i] = merge_cost(shapes_[a], shapes_[b], e.shared, balance_);
+uint32_t DualMerger::version_of(const Edge& edge) const {
+  if (hub_sizes_.empty()) return 0;  // only hubs have versions
+  return clusters_[edge.end[0]].version + clusters_[edge.end[1]].version;
+}
+
+/// Sets the least that edges can cost.
+void DualMerger::bound_costs(std::span<const uint32_t> edges) {
+  for (const uint32_t edge : edges) {
+    Edge& e = edges_[edge];
+    e.stamp = kNone;
+    costs_.set(edge, least_merge_cost(shapes_[e.end[0]], shapes_[e.end[1]], e.shared, balance_));
   }
-  for (size_t i = 0; i < edges.size(); ++i) costs_.set(edges[i], new_costs_[i]);
   costs_computed_ += edges.size();
+}
+
+void DualMerger::compute_cost(uint32_t edge) {
+  Edge& e = edges_[edge];
+  e.stamp = version_of(e);
+  costs_.set(edge, merge_cost(shapes_[e.end[0]], shapes_[e.end[1]], e.shared, balance_));
+  ++costs_computed_;
 }
 
 void DualMerger::run(float balance, size_t target, ClusterRef first_name, std::vector<Merge>& merges) {
@@ -130,9 +147,8 @@ void DualMerger::run(float balance, size_t target, ClusterRef first_name, std::v
   edge_to_.assign(clusters_.size(), kNone);
   costs_.reset(edges_.size());
   for (uint32_t e = 0; e < edges_.size(); ++e) {
-    const float cost =
-        merge_cost(shapes_[edges_[e].end[0]], shapes_[edges_[e].end[1]], edges_[e].shared, balance_);
-    costs_.prepare(e, cost);
+    const auto [a, b] = edges_[e].end;
+    costs_.prepare(e, least_merge_cost(shapes_[a], shapes_[b], edges_[e].shared, balance_));
   }
   costs_.build();
   for (uint32_t c = 0; c < clusters_.size(); ++c)
@@ -142,11 +158,11 @@ void DualMerger::run(float balance, size_t target, ClusterRef first_name, std::v
     const uint32_t edge = costs_.least();
     if (costs_.cost(edge) == CostTournament::kOut) break;
     const Edge& e = edges_[edge];
-    const Cluster &a = clusters_[e.end[0]], &b = clusters_[e.end[1]];
-    if (e.stamp != a.version + b.version) {
-      update_costs({&edge, 1});
+    if (e.stamp != version_of(e)) {
+      compute_cost(edge);
       continue;
     }
+    const Cluster &a = clusters_[e.end[0]], &b = clusters_[e.end[1]];
     merges.push_back({{a.name, b.name}, a.count + b.count});
     clusters_[collapse(edge)].name = first_name++;
     --left;
@@ -194,7 +210,7 @@ void DualMerger::move_edges(uint32_t into, uint32_t from) {
     edge_to_[other_end(link)] = kNone;
     touched_.push_back(link / 2);
   }
-  update_costs(touched_);
+  bound_costs(touched_);
 }
 
 /// The same for a hub, without a walk along its own edges: double ones are found from the neighbour's side,
@@ -222,7 +238,7 @@ void DualMerger::move_edges_to_hub(uint32_t into, uint32_t from) {
     drop_link(neighbour, link ^ 1);
     touched_.push_back(twin);
   }
-  update_costs(touched_);
+  bound_costs(touched_);
 }
 
 /// Entries of clusters that have been absorbed stay in the map: nobody asks for them again.

@@ -30,6 +30,10 @@ ClusterShape merged(const ClusterShape& a, const ClusterShape& b, float shared);
 /// not an infinite one.
 float merge_cost(const ClusterShape& a, const ClusterShape& b, float shared, float balance);
 
+/// What merge_cost() is with E_fit = 0: never more, and most of it for flat clusters, at a quarter of the
+/// work.
+float least_merge_cost(const ClusterShape& a, const ClusterShape& b, float shared, float balance);
+
 /// A step of the collapse: two clusters, named by what the caller called them, became one of `count`
 /// triangles.
 struct Merge {
@@ -39,7 +43,10 @@ struct Merge {
 
 /// Add clusters and dual edges, then run(). Reused for many sets, it keeps its memory.
 ///
-/// Costs of all edges of a merged cluster are computed anew, except at hubs: a cluster of more than
+/// Edges of a merged cluster are entered with the least that they can cost, and that only is corrected when
+/// they come up for collapse: the order is the same as if all were computed at once, and most never come up.
+///
+/// All edges of a merged cluster are entered anew, except at hubs: a cluster of more than
 /// kHubDegree neighbours (a plate with a hundred thousand rivets) would make that quadratic. Its edges are
 /// recomputed when they come up for collapse and the hub has grown by a sixteenth since, which is at most
 /// logarithmically often.
@@ -92,7 +99,8 @@ class DualMerger {
     uint32_t end[2];
     uint32_t next[2], previous[2];
     float shared;
-    uint32_t stamp;  ///< sum of its ends' versions when its cost was computed
+    uint32_t
+        stamp;  ///< sum of its ends' versions when its cost was computed; kNone while that is a least cost
   };
   struct HubSize {
     uint32_t count;
@@ -105,7 +113,9 @@ class DualMerger {
   void push_link(uint32_t cluster, uint32_t link);
   void drop_link(uint32_t cluster, uint32_t link);
   void remove_edge(uint32_t edge);
-  void update_costs(std::span<const uint32_t> edges);
+  uint32_t version_of(const Edge& edge) const;
+  void bound_costs(std::span<const uint32_t> edges);
+  void compute_cost(uint32_t edge);
   uint32_t collapse(uint32_t edge);
   void absorb(uint32_t into, uint32_t from, float shared);
   void move_edges(uint32_t into, uint32_t from);
@@ -119,7 +129,6 @@ class DualMerger {
   CostTournament costs_;
   std::vector<uint32_t> edge_to_;  ///< per cluster: scratch of move_edges()
   std::vector<uint32_t> touched_;  ///< scratch: edges whose cost has changed
-  std::vector<float> new_costs_;   ///< scratch of update_costs()
   std::unordered_map<uint64_t, uint32_t> hub_edges_;
   std::unordered_map<uint32_t, HubSize> hub_sizes_;  ///< as of their version
   float balance_ = 0;

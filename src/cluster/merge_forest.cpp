@@ -14,7 +14,8 @@
 namespace goldthread {
 namespace {
 
-/// A smaller k would be lost in the rounding of E_fit: on planes, where E_fit is 0, clusters would grow by number alone.
+/// A smaller k would be lost in the rounding of E_fit: on planes, where E_fit is 0, clusters would grow by
+/// number alone.
 constexpr float kLeastBalance = 1e-6f;
 
 constexpr uint32_t kNone = 0xffffffffu;
@@ -53,7 +54,10 @@ struct Remainder {
 class Builder {
  public:
   Builder(const TriangleMesh& mesh, const FaceClusterOptions& options)
-      : mesh_(mesh), options_(options), balance_(std::max(options.balance, kLeastBalance)), frame_(mesh.positions) {}
+      : mesh_(mesh),
+        options_(options),
+        balance_(std::max(options.balance, kLeastBalance)),
+        frame_(mesh.positions) {}
 
   MergeForest build() {
     twins_ = find_twins(mesh_);

@@ -24,7 +24,7 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
       const uint32_t p = points.corners[c];
       const vec3 n = back ? -points.points[p].normal : points.points[p].normal;
       // A flat leaf's vector holds only what its normal faces; a curved one's is turned.
-      const vec3 turned = leaf.cone_cosine > 0.95f ? solver.state().irradiance[leaves[f]] : glm::max(n * vector, vec3(0));
+      const vec3 turned = leaf.cone_cosine > 0.95f ? solver.state().irradiance[leaves[f]] : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
       sum[p] += turned;
       weight[p] += 1;
     }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "files/gltf_builder.h"
+#include "files/light_samples.h"
 #include "files/png_encode.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
@@ -13,74 +14,20 @@ namespace goldthread {
 namespace {
 
 using nlohmann::json;
+using test::expect_kept;
 using test::expect_valid;
 using test::GltfBuilder;
+using test::light_all;
+using test::light_refined;
 using test::TempFolder;
 using test::WrittenGltf;
 
 constexpr SceneWriteOptions kVertexLight{OutputMode::kVertexLight, 1};
 
-/// Light on every primitive of every instance, vertex i of instance n getting (n + 1, i, 0.5) lux.
-Lighting light_all(const Scene& scene) {
-  Lighting lighting;
-  for (uint32_t n = 0; n < scene.instances.size(); ++n) {
-    const Mesh& mesh = scene.meshes[scene.instances[n].mesh];
-    for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
-      LitPrimitive lit;
-      lit.instance = n;
-      lit.primitive = p;
-      for (size_t i = 0; i < mesh.primitives[p].positions.size(); ++i)
-        lit.irradiance.emplace_back(float(n + 1), float(i), 0.5f);
-      if (scene.materials[mesh.primitives[p].material].double_sided) lit.irradiance_back = lit.irradiance;
-      lighting.primitives.push_back(std::move(lit));
-    }
-  }
-  return lighting;
-}
-
-/// The same on meshes split at the middle of every triangle's longest-named edge: a vertex per corner and one
-/// between corners 1 and 2.
-Lighting light_refined(const Scene& scene) {
-  Lighting lighting = light_all(scene);
-  for (LitPrimitive& lit : lighting.primitives) {
-    const Primitive& primitive = scene.meshes[scene.instances[lit.instance].mesh].primitives[lit.primitive];
-    lit.source_mesh = false;
-    const bool two_sided = !lit.irradiance_back.empty();
-    for (uint32_t t = 0; t < primitive.triangle_count(); ++t) {
-      const uint32_t first = 4 * t;
-      for (const vec2& weights : {vec2(0), vec2(1, 0), vec2(0, 1), vec2(0.5f)})
-        lit.origins.push_back({t, weights});
-      lit.faces.insert(lit.faces.end(),
-                       {UVec3(first, first + 1, first + 3), UVec3(first, first + 3, first + 2)});
-      lit.face_parents.insert(lit.face_parents.end(), 2, t);
-    }
-    lit.irradiance.assign(lit.origins.size(), vec3(100, 50, 25));
-    lit.irradiance_back.assign(two_sided ? lit.origins.size() : 0, vec3(1));
-  }
-  return lighting;
-}
-
 Scene read(const std::string& file) {
   Result<Scene> scene = read_scene(file);
   if (!scene) throw std::runtime_error(scene.error().line());
   return *std::move(scene);
-}
-
-/// Everything that `before` says, `after` says too, in the same words; arrays may only have grown.
-void expect_kept(const json& before, const json& after, const std::string& path = "") {
-  ASSERT_EQ(before.type(), after.type()) << path;
-  if (before.is_object()) {
-    for (const auto& [key, value] : before.items()) {
-      ASSERT_TRUE(after.contains(key)) << path << "/" << key;
-      expect_kept(value, after[key], path + "/" + key);
-    }
-  } else if (before.is_array()) {
-    ASSERT_LE(before.size(), after.size()) << path;
-    for (size_t i = 0; i < before.size(); ++i)
-      expect_kept(before[i], after[i], path + "/" + std::to_string(i));
-  } else {
-    EXPECT_EQ(before, after) << path;
-  }
 }
 
 /// A file with everything in it that a careless writer loses.

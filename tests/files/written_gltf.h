@@ -49,6 +49,24 @@ struct WrittenGltf {
   }
 };
 
+/// Everything that `before` says, `after` says too, in the same words; arrays may only have grown.
+inline void expect_kept(const nlohmann::json& before, const nlohmann::json& after,
+                        const std::string& path = "") {
+  ASSERT_EQ(before.type(), after.type()) << path;
+  if (before.is_object()) {
+    for (const auto& [key, value] : before.items()) {
+      ASSERT_TRUE(after.contains(key)) << path << "/" << key;
+      expect_kept(value, after[key], path + "/" + key);
+    }
+  } else if (before.is_array()) {
+    ASSERT_LE(before.size(), after.size()) << path;
+    for (size_t i = 0; i < before.size(); ++i)
+      expect_kept(before[i], after[i], path + "/" + std::to_string(i));
+  } else {
+    EXPECT_EQ(before, after) << path;
+  }
+}
+
 /// Runs Khronos' validator, where it is installed (`npm ci` in tools/).
 inline void expect_valid(const std::string& file) {
   const auto tools = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "tools";

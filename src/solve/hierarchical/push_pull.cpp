@@ -14,11 +14,13 @@ void RadiosityState::grow_to(const ElementPool& pool) {
   low.resize(count);
   high.resize(count);
   vector.resize(count, mat3(0));
+  ambient.resize(count, vec3(0));
   for (size_t i = before; i < count; ++i) {
     const Element& e = pool[static_cast<ElementId>(i)];
     if (e.parent != kNoElement) {
       irradiance[i] = irradiance[e.parent];
       vector[i] = vector[e.parent];
+      ambient[i] = ambient[e.parent];
     }
     radiosity[i] = e.exitance + e.reflectance * irradiance[i];
     low[i] = high[i] = largest(radiosity[i]);
@@ -30,9 +32,11 @@ namespace {
 // Irradiance vectors by octant of the direction they come from; a column a colour channel.
 struct Octants {
   std::array<mat3, 8> sum{};
+  vec3 ambient{0};  // what falls on every normal alike
   uint32_t used = 0;
 
-  void add(const vec3& transfer, const vec3& radiosity) {
+  void add(const vec3& transfer, float even, const vec3& radiosity) {
+    ambient += even * radiosity;
     const uint32_t octant = (transfer.x < 0 ? 1u : 0u) | (transfer.y < 0 ? 2u : 0u) | (transfer.z < 0 ? 4u : 0u);
     if ((used >> octant & 1) == 0) sum[octant] = mat3(0);
     used |= 1u << octant;
@@ -41,9 +45,9 @@ struct Octants {
     sum[octant][2] += transfer * radiosity.z;
   }
 
-  // Irradiance on a plane of (not necessarily unit) normal `n`, each octant clipped by it.
+  // Irradiance on a plane of unit normal `n`, each octant clipped by it; a shorter `n` stands for a bundle of normals.
   vec3 on(const vec3& n) const {
-    vec3 e(0);
+    vec3 e = ambient;
     for (uint32_t o = 0; o < 8; ++o)
       if ((used >> o & 1) != 0) e += glm::max(n * sum[o], vec3(0));
     return e;
@@ -73,7 +77,7 @@ struct Sweep {
     for (const Link& link : links.into(id)) {
       if (link.mean <= 0) continue;
       const vec3& b = old[link.source];
-      octants.add(link.transfer, b);
+      octants.add(link.transfer, link.ambient, b);
       direct += link.mean * b;
     }
     const Element& e = pool[id];
@@ -103,6 +107,7 @@ struct Sweep {
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;
     state.low[id] = state.high[id] = largest(state.radiosity[id]);
     state.vector[id] = all.facing(e.summed_normal);
+    state.ambient[id] = all.ambient;
     return largest(change);
   }
 

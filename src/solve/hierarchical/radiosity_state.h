@@ -13,6 +13,7 @@ struct RadiosityState {
   std::vector<vec3> irradiance;   ///< lux, area mean
   std::vector<float> low, high;   ///< least and largest radiosity (largest channel) among the leaves below
   std::vector<mat3> vector;       ///< of leaves: columns are the irradiance vectors of R, G, B (equation 4.13)
+  std::vector<vec3> ambient;      ///< of leaves: irradiance that every normal gets besides
 
   void grow_to(const ElementPool& pool);
 };

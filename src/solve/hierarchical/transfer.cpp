@@ -9,7 +9,7 @@ namespace goldthread {
 namespace {
 
 // Largest error of a form factor that one piece of a source may bring in.
-constexpr float kTolerance = 2e-4f;
+constexpr float kTolerance = 4e-4f;
 
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre `distance_squared` away,
 // may be treated as a point: the error of that falls as the square of size over distance.
@@ -76,7 +76,10 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     const float extent = std::min(1.0f, radius / std::max(distance, 1e-30f));
     const float slack = node.cone_cosine > 0 ? std::min(1.0f, cone_sine + extent) : 1.0f;
     if (squared > radius * radius && facing < -slack && node.cone_cosine > 0) continue;  // all seen from behind
-    const float factor = area / (kPi * squared + 1e-30f);
+    // At most: the cosines at both ends, as far as the cluster's extent leaves them open, over the squared distance.
+    const float at_receiver = std::min(1.0f, (std::abs(dot(d, n)) + radius) / (distance + 1e-30f));
+    const float at_source = std::min(1.0f, std::max(0.0f, facing) + slack);
+    const float factor = area * at_receiver * at_source / (kPi * squared + 1e-30f);
     const bool turned_here = facing > slack;  // every triangle faces x
     const bool small = turned_here ? small_enough(factor, radius, squared)
                                    : factor < kTolerance && squared > 4 * radius * radius;
@@ -133,6 +136,32 @@ uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCou
   count.rays += rays.size();
   count.nanoseconds += static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
   return blocked;
+}
+
+// Splits a link's light into a part that follows the normal and one that does not, by least squares over the samples,
+// keeping the sampled mean; and measures what remains unexplained.
+void fit_model(Link& link, std::span<const float> received, std::span<const vec3> normals) {
+  const auto count = static_cast<float>(received.size());
+  float predicted_mean = 0;
+  for (const vec3& n : normals) predicted_mean += std::max(0.0f, dot(n, link.transfer)) / count;
+  if (predicted_mean > 0) {
+    const float scale = link.mean / predicted_mean;
+    float covariance = 0, variance = 0;
+    for (size_t i = 0; i < received.size(); ++i) {
+      const float predicted = scale * std::max(0.0f, dot(normals[i], link.transfer)) - link.mean;
+      covariance += predicted * (received[i] - link.mean);
+      variance += predicted * predicted;
+    }
+    // One normal, or none to tell apart: all is vector.
+    const float follows = variance > 1e-6f * link.mean * link.mean * count ? std::clamp(covariance / variance, 0.0f, 1.0f) : 1.0f;
+    link.transfer *= follows * scale;
+    link.ambient = (1 - follows) * link.mean;
+  } else {
+    link.transfer = vec3(0);
+    link.ambient = link.mean;
+  }
+  for (size_t i = 0; i < received.size(); ++i)
+    link.spread = std::max(link.spread, std::abs(received[i] - link.ambient - std::max(0.0f, dot(normals[i], link.transfer))));
 }
 
 }  // namespace
@@ -245,42 +274,36 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   link.source = source;
   const Element& r = pool[receiver];
   const bool volume = r.kind == ElementKind::kVolume;
-  float low = std::numeric_limits<float>::max(), high = 0, seen = 0, weight = 0;
+  float seen = 0, weight = 0;
   uint32_t rays = 0, facing = 0;
+  std::array<float, kStoredSamples> received{};
+  std::array<vec3, kStoredSamples> normals;
   for (uint32_t i = 0; i < points; ++i) {
     const SurfacePoint x = pool.sample(receiver, i, points);
+    normals[i] = x.normal;
     const vec3 m = point_transfer(pool, source, x.position, x.normal);
-    float here = dot(m, x.normal);
-    if (here <= 0) {
-      low = 0;
-      continue;
-    }
+    const float here = dot(m, x.normal);
+    if (here <= 0) continue;
     ++facing;
     link.unoccluded += here;
     const uint64_t before = ray_count.rays;
-    const float v = visibility.fraction(pool, source, x.position, x.normal, rays_per_point, receiver * 16 + i, ray_count);
+    const float v =
+        visibility.fraction(pool, source, x.position, x.normal, rays_per_point, receiver * 16 + i, ray_count);
     rays += static_cast<uint32_t>(ray_count.rays - before);
     seen += here * v;
     weight += here;
-    here *= v;
+    received[i] = here * v;
     link.transfer += m * v;
-    link.mean += here;
-    low = std::min(low, here);
-    high = std::max(high, here);
+    link.mean += here * v;
   }
   const float share = 1.0f / static_cast<float>(points);
   // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
   if (facing > 0) link.transfer /= static_cast<float>(facing);
   link.mean *= share;
   link.unoccluded *= share;
-  link.spread = high > low ? 0.5f * (high - low) : 0.0f;
   link.visibility = static_cast<uint8_t>(std::lround(weight > 0 ? 255 * seen / weight : 0));
   link.rays = static_cast<uint8_t>(std::min(rays, 255u));
-  // What children inherit is S_child . m; scaled so that over the whole receiver this keeps the sampled energy
-  // (equation 4.16 loses it as the cone of normals opens).
-  const float projected = dot(link.transfer, r.summed_normal);
-  if (!volume && r.cone_cosine > 0.3f && projected > 0)
-    link.transfer *= std::clamp(link.mean * r.area / projected, 0.5f, 2.0f);
+  if (!volume) fit_model(link, {received.data(), points}, {normals.data(), points});
   return link;
 }
 

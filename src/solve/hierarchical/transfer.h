@@ -43,9 +43,13 @@ struct Visibility {
 /// The light path between two elements (sections 4.2.3 and 4.5.3).
 struct Link {
   ElementId receiver = kNoElement, source = kNoElement;
-  vec3 transfer{0};        ///< m: irradiance vector on the receiver per unit radiosity of the source, visibility included
-  float mean = 0;          ///< mean of dot(n, m) over the receiver's real triangles: irradiance per unit radiosity
-  float spread = 0;        ///< half the range of that over the receiver
+  /// What a piece of the receiver with normal n gets per unit radiosity, visibility included: dot(n, transfer) + ambient.
+  /// The vector (equation 4.19) is right for a source that all of the receiver sees in one direction; a source that
+  /// surrounds it, as the rest of a hollow sphere does, brings the same to every normal. The mix is fitted to samples.
+  vec3 transfer{0};
+  float ambient = 0;
+  float mean = 0;          ///< mean over the receiver's real triangles: irradiance per unit radiosity
+  float spread = 0;        ///< largest deviation of a sample from what transfer and ambient say of its normal
   float unoccluded = 0;    ///< mean, were everything visible
   uint8_t visibility = 0;  ///< share of sample rays that got through, of 255
   uint8_t rays = 0;        ///< how many there were

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -67,21 +69,30 @@ Camera camera_at(const vec3& position, const vec3& forward, float fov, float asp
   return camera;
 }
 
-/// The camera moved back along its view until the whole box is in the picture.
-Camera fit(const Box& box, const vec3& forward, float fov, float aspect) {
-  Camera camera = camera_at(box.centre(), forward, fov, aspect);
+/// The camera that looks along `forward` from where all points just fit into its picture. With x across, y up
+/// and z along the view, a camera at (x0, y0, -d) sees a point when |x - x0| <= wide * (z + d), and likewise
+/// for y: the largest of x - wide * z and of -x - wide * z bound x0 and d.
+Camera fit(std::span<const vec3> points, const vec3& forward, float fov, float aspect) {
+  Camera camera = camera_at(vec3(0), forward, fov, aspect);
   const vec3 right = normalize(cross(camera.forward, camera.up)), up = cross(right, camera.forward);
-  const float tall = std::tan(fov / 2), wide = tall * aspect;
-  float back = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const vec3 pick(corner & 1 ? 1 : 0, corner & 2 ? 1 : 0, corner & 4 ? 1 : 0);
-    const vec3 offset = glm::mix(box.low, box.high, pick) - box.centre();
-    const float depth = dot(offset, camera.forward);
-    back = std::max(back, std::abs(dot(offset, right)) / wide - depth);
-    back = std::max(back, std::abs(dot(offset, up)) / tall - depth);
+  const float margin = 0.96f, tall = std::tan(fov / 2) * margin, wide = tall * aspect;
+  vec2 most(std::numeric_limits<float>::lowest()), least(std::numeric_limits<float>::lowest());
+  for (const vec3& point : points) {
+    const vec2 across(dot(point, right), dot(point, up));
+    const vec2 slope = vec2(wide, tall) * dot(point, camera.forward);
+    most = glm::max(most, across - slope);
+    least = glm::max(least, -across - slope);
   }
-  camera.position = box.centre() - camera.forward * (back * 1.04f);
+  const vec2 middle = 0.5f * (most - least), back = 0.5f * (most + least) / vec2(wide, tall);
+  camera.position = middle.x * right + middle.y * up - std::max(back.x, back.y) * camera.forward;
   return camera;
+}
+
+std::array<vec3, 8> corners(const Box& box) {
+  std::array<vec3, 8> points;
+  for (size_t i = 0; i < 8; ++i)
+    points[i] = glm::mix(box.low, box.high, vec3(i & 1 ? 1 : 0, i & 2 ? 1 : 0, i & 4 ? 1 : 0));
+  return points;
 }
 
 /// Long views over many things, evenly, are good ones; holes and walls right before the lens are bad.
@@ -113,7 +124,7 @@ float score(const ShownScene& shown, const Camera& camera) {
   }
   const float rays = kWide * kTall;
   const float missed = 1 - static_cast<float>(hits) / rays, too_close = static_cast<float>(close) / rays;
-  return (depth / rays) * (0.5f + entropy) * (1 - missed) * (1 - too_close) * (1 - too_close);
+  return std::sqrt(depth / rays) * (0.5f + entropy) * (1 - missed) * (1 - too_close) * (1 - too_close);
 }
 
 /// Places at about eye height, and the ways to look from each.
@@ -131,7 +142,8 @@ std::vector<Camera> inside_candidates(const ShownScene& shown) {
         if (around.hit_share < kRoomShare || around.clearance < 0.015f * box.diagonal()) continue;
         for (int turn = 0; turn < 16; ++turn) {
           const float yaw = kPi / 8 * static_cast<float>(turn);
-          cameras.push_back(camera_at(position, vec3(std::cos(yaw), -0.12f, std::sin(yaw)), kFov, kAspect));
+          for (float pitch : {-0.12f, -0.35f})
+            cameras.push_back(camera_at(position, vec3(std::cos(yaw), pitch, std::sin(yaw)), kFov, kAspect));
         }
       }
   return cameras;
@@ -145,7 +157,7 @@ std::vector<Camera> opening_candidates(const Box& box) {
   for (const vec3& forward : {vec3(0, 0, -1), vec3(0, 0, 1), vec3(-1, 0, 0), vec3(1, 0, 0)}) {
     const float width = forward.z != 0 ? box.size().x : box.size().z;
     const float aspect = std::clamp(width / std::max(box.size().y, 1e-6f), 0.75f, kAspect);
-    cameras.push_back(fit(box, forward, kFov, aspect));
+    cameras.push_back(fit(corners(box), forward, kFov, aspect));
   }
   return cameras;
 }
@@ -168,7 +180,7 @@ Camera frame_camera(const ShownScene& shown) {
       for (const Camera& camera : opening_candidates(box)) cameras.push_back(camera);
     if (!cameras.empty()) return best_of(shown, cameras);
   }
-  return fit(box, normalize(vec3(-0.55f, -0.42f, -0.8f)), 0.6f, kAspect);
+  return fit(shown.corner_points(), normalize(vec3(-0.55f, -0.5f, -0.8f)), 0.6f, kAspect);
 }
 
 }  // namespace goldthread

@@ -127,6 +127,15 @@ bool ShownScene::looked_through(uint32_t triangle, vec2 weights, const Ray& ray)
   return material.alpha_mode == AlphaMode::kMask && alpha_at(triangle, weights) < material.alpha_cutoff;
 }
 
+std::vector<vec3> ShownScene::corner_points() const {
+  std::vector<uint8_t> used(positions_.size());  // vertices that no triangle uses may be anywhere
+  for (const UVec3& face : triangles_) used[face.x] = used[face.y] = used[face.z] = 1;
+  std::vector<vec3> points;
+  for (size_t i = 0; i < used.size(); ++i)
+    if (used[i]) points.push_back(positions_[i]);
+  return points;
+}
+
 Hit ShownScene::closest(const Ray& ray) const {
   return drawn_ ? drawn_->closest(ray) : Hit{};
 }

@@ -37,6 +37,8 @@ class ShownScene {
 
   uint32_t surface_of(uint32_t triangle) const { return surface_of_[triangle]; }
   bool seen_from_back(uint32_t triangle, const Ray& ray) const;
+  /// World positions of the corners of all triangles, each at least once.
+  std::vector<vec3> corner_points() const;
   const Box& bounds() const { return bounds_; }
   bool empty() const { return triangles_.empty(); }
 

@@ -7,9 +7,8 @@
 namespace goldthread::procedural {
 namespace {
 
-constexpr double kTau = 2 * double(kPi);
-constexpr int kProbes = 16;             // samples along a line when a panel is measured
-constexpr double kCoarsestTurn = 0.55;  // radians that neighbouring faces may differ in at the least rates
+constexpr int kProbes = 16;            // samples along a line when a panel is measured
+constexpr double kCoarsestTurn = 0.7;  // radians that neighbouring faces may differ in at the least rates
 
 /// Length of a line across the surface and the angle through which the normal turns along it.
 struct LineMeasure {
@@ -125,27 +124,6 @@ Surface mirrored(const Surface& surface) {
     return dvec3(p.x, p.y, -p.z);
   };
   return {point, surface.closed_u, surface.closed_v, !surface.flip};
-}
-
-Surface pillow(const dvec3& a, const dvec3& b, const dvec3& x, const dvec3& y) {
-  const auto point = [=](double u, double v) {
-    const double along = 2 * v - 1;
-    const double size = 0.1 + 0.9 * std::sqrt(std::max(0.0, 1 - std::pow(along, 4)) + 1e-4);
-    const double angle = kTau * u;
-    return a + v * (b - a) + size * (std::cos(angle) * x + std::sin(angle) * y);
-  };
-  const bool left_handed = dot(cross(x, y), b - a) < 0;
-  return {point, true, false, left_handed};
-}
-
-Surface torus(const dvec3& centre, const dvec3& x, const dvec3& y, double radius, double thickness) {
-  const dvec3 axis = cross(x, y);
-  const auto point = [=](double u, double v) {
-    const double round = kTau * u, section = kTau * v;
-    const dvec3 outward = std::cos(round) * x + std::sin(round) * y;
-    return centre + radius * outward + thickness * (std::cos(section) * outward + std::sin(section) * axis);
-  };
-  return {point, true, true, false};
 }
 
 }  // namespace goldthread::procedural

@@ -49,10 +49,4 @@ Surface part_of(const Surface& surface, double u0, double u1, double v0, double 
 /// The surface mirrored in z.
 Surface mirrored(const Surface& surface);
 
-/// A cushion round the segment from a to b: elliptic sections with the half axes `x` and `y` that shrink
-/// towards its two open ends. Front outside.
-Surface pillow(const dvec3& a, const dvec3& b, const dvec3& x, const dvec3& y);
-/// A torus round `centre` in the plane of the orthogonal vectors `x` and `y`. Front outside.
-Surface torus(const dvec3& centre, const dvec3& x, const dvec3& y, double radius, double thickness);
-
 }  // namespace goldthread::procedural

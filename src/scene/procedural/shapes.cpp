@@ -7,6 +7,8 @@
 namespace goldthread::procedural {
 namespace {
 
+constexpr double kTau = 2 * double(kPi);
+
 uint32_t next_vertex(const Primitive& out) {
   return static_cast<uint32_t>(out.positions.size());
 }
@@ -84,6 +86,31 @@ void add_grid(Primitive& out, const dvec3& corner, const dvec3& across, const dv
   add_grid_faces(out, grid, false);
 }
 
+void add_lattice(Primitive& out, const LatticeRectangle& rectangle, double step, int rate,
+                 const std::function<bool(int, int)>& is_hole) {
+  const int columns = rectangle.columns * rate, rows = rectangle.rows * rate;
+  const dvec3 normal = cross(dvec3(rectangle.across), dvec3(rectangle.up));
+  constexpr uint32_t kNone = 0xffffffffu;
+  std::vector<uint32_t> vertices(size_t(columns + 1) * size_t(rows + 1), kNone);  // made when first used
+  const auto vertex = [&](int i, int j) {
+    uint32_t& number = vertices[size_t(j) * size_t(columns + 1) + size_t(i)];
+    if (number == kNone) {
+      number = next_vertex(out);
+      const glm::ivec3 place = rectangle.corner * rate + rectangle.across * i + rectangle.up * j;
+      add_vertex(out, dvec3(place) * step / double(rate), normal);
+    }
+    return number;
+  };
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      if (is_hole && is_hole(i / rate, j / rate)) continue;
+      const uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
+      add_face(out, a, b, c);
+      add_face(out, a, c, d);
+    }
+  }
+}
+
 void add_box(Primitive& out, const dvec3& low, const dvec3& high, int rate, Facing facing) {
   const auto corner = [&](int x, int y, int z) {
     return dvec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
@@ -129,7 +156,7 @@ void add_surface(Primitive& out, const Surface& surface, int columns, int rows) 
 
 Surface ring(const dvec3& centre, const dvec3& x, const dvec3& y, double inner, double outer) {
   const auto point = [=](double u, double v) {
-    const double angle = 2 * double(kPi) * u, radius = outer + (inner - outer) * v;
+    const double angle = kTau * u, radius = outer + (inner - outer) * v;
     return centre + radius * (std::cos(angle) * x + std::sin(angle) * y);
   };
   return {point, true, false, false};
@@ -140,17 +167,31 @@ Surface tube(const dvec3& a, const dvec3& b, double radius) {
   const dvec3 x = normalize(cross(axis, std::abs(axis.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
   const dvec3 y = cross(axis, x);
   const auto point = [=](double u, double v) {
-    const double angle = 2 * double(kPi) * u;
+    const double angle = kTau * u;
     return a + v * (b - a) + radius * (std::cos(angle) * x + std::sin(angle) * y);
   };
   return {point, true, false, false};
 }
 
-void append(Primitive& out, const Primitive& part) {
-  const uint32_t first = next_vertex(out);
-  out.positions.insert(out.positions.end(), part.positions.begin(), part.positions.end());
-  out.normals.insert(out.normals.end(), part.normals.begin(), part.normals.end());
-  for (uint32_t index : part.indices) out.indices.push_back(first + index);
+Surface pillow(const dvec3& a, const dvec3& b, const dvec3& x, const dvec3& y) {
+  const auto point = [=](double u, double v) {
+    const double along = 2 * v - 1;
+    const double size = 0.1 + 0.9 * std::sqrt(std::max(0.0, 1 - std::pow(along, 4)) + 1e-4);
+    const double angle = kTau * u;
+    return a + v * (b - a) + size * (std::cos(angle) * x + std::sin(angle) * y);
+  };
+  const bool left_handed = dot(cross(x, y), b - a) < 0;
+  return {point, true, false, left_handed};
+}
+
+Surface torus(const dvec3& centre, const dvec3& x, const dvec3& y, double radius, double thickness) {
+  const dvec3 axis = cross(x, y);
+  const auto point = [=](double u, double v) {
+    const double round = kTau * u, section = kTau * v;
+    const dvec3 outward = std::cos(round) * x + std::sin(round) * y;
+    return centre + radius * outward + thickness * (std::cos(section) * outward + std::sin(section) * axis);
+  };
+  return {point, true, true, false};
 }
 
 uint32_t add_material(Scene& scene, std::string name, const vec3& reflectance, const vec3& emission) {

@@ -22,6 +22,16 @@ void add_quad(Primitive& out, const std::array<dvec3, 4>& corners, int rate = 1)
 void add_grid(Primitive& out, const dvec3& corner, const dvec3& across, const dvec3& up, int columns,
               int rows);
 
+/// A flat rectangle of square cells on a lattice of `step` metres, each cell cut into rate * rate. All in
+/// lattice units; the front is that of cross(across, up). Points depend on lattice coordinates alone, so that
+/// rectangles of one lattice and rate are watertight where they meet.
+struct LatticeRectangle {
+  glm::ivec3 corner{0}, across{1, 0, 0}, up{0, 1, 0};  ///< `across` and `up` are unit steps along an axis
+  int columns = 1, rows = 1;
+};
+void add_lattice(Primitive& out, const LatticeRectangle& rectangle, double step, int rate,
+                 const std::function<bool(int column, int row)>& is_hole = {});
+
 /// Which side of a box is its front.
 enum class Facing { kOutward, kInward };
 
@@ -49,8 +59,11 @@ Surface ring(const dvec3& centre, const dvec3& x, const dvec3& y, double inner, 
 /// A tube of the given radius around the segment from a to b, without caps, front outside.
 Surface tube(const dvec3& a, const dvec3& b, double radius);
 
-/// Appends `part` to `out`.
-void append(Primitive& out, const Primitive& part);
+/// A cushion round the segment from a to b: elliptic sections with the half axes `x` and `y` that shrink
+/// towards its two open ends. Front outside.
+Surface pillow(const dvec3& a, const dvec3& b, const dvec3& x, const dvec3& y);
+/// A torus round `centre` in the plane of the orthogonal vectors `x` and `y`. Front outside.
+Surface torus(const dvec3& centre, const dvec3& x, const dvec3& y, double radius, double thickness);
 
 /// Adds a diffuse material (metallic 0) and returns its index. `emission` in nits.
 uint32_t add_material(Scene& scene, std::string name, const vec3& reflectance,

@@ -37,7 +37,7 @@ bool plausible_stream(const char* data, size_t size) {
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return false;
   if (header.encoder_type != draco::TRIANGULAR_MESH) return false;
-  const uint16_t version = DRACO_BITSTREAM_VERSION(header.version_major, header.version_minor);
+  const auto version = uint16_t(DRACO_BITSTREAM_VERSION(header.version_major, header.version_minor));
   buffer.set_bitstream_version(version);
   if (header.flags & METADATA_FLAG_MASK) {
     draco::GeometryMetadata metadata;

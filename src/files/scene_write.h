@@ -15,10 +15,10 @@ struct SceneWriteOptions {
   float exposure = 1;  ///< kUnlit: outgoing radiance in nits * exposure becomes COLOR_0, clamped to 0..1
 };
 
-/// Writes `scene` with `lighting` to `file` (.glb or .gltf + .bin). When scene.file is glTF, that file is read again and
-/// everything in it survives (animations, extras, unknown extensions): only primitives in `lighting` change. Draco and
-/// meshopt compressed primitives that change are written uncompressed. An instance whose light differs from another of
-/// the same mesh gets a mesh of its own.
+/// Writes `scene` with `lighting` to `file` (.glb or .gltf + .bin). When scene.file is glTF, that file is
+/// read again and everything in it survives (animations, extras, unknown extensions): only primitives in
+/// `lighting` change. Draco and meshopt compressed primitives that change are written uncompressed. An
+/// instance whose light differs from another of the same mesh gets a mesh of its own.
 Status write_lit_scene(const std::string& file, const Scene& scene, const Lighting& lighting,
                        const SceneWriteOptions& options);
 

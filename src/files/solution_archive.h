@@ -9,7 +9,6 @@
 
 namespace goldthread {
 
-
 /// The sections of a solution, in the order they are stored.
 std::vector<std::string> section_names();
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name);

@@ -132,8 +132,7 @@ Status check_header(sqlite3* database, const std::string& file) {
 Result<size_t> section_size(sqlite3* database, const std::string& file, const std::string& name) {
   const auto stated = query_number(database, "SELECT size FROM sections WHERE name='" + name + "'");
   const auto held = query_number(
-      database,
-      "SELECT coalesce(sum(length(bytes)), 0) FROM parts WHERE section='" + name + "'");
+      database, "SELECT coalesce(sum(length(bytes)), 0) FROM parts WHERE section='" + name + "'");
   if (!stated || !held) return unreadable(file, name, "is missing");
   if (*stated < 0 || *stated != *held)
     return unreadable(file, name, fmt::format("states {} bytes and holds {}", *stated, *held));

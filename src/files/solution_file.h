@@ -10,7 +10,7 @@ namespace goldthread {
 
 struct Solution {
   std::string report_json;
-  Scene scene;        ///< everything needed to look at the light: geometry, materials, textures, cameras, lights
+  Scene scene;  ///< everything needed to look at the light: geometry, materials, textures, cameras, lights
   Lighting lighting;
 };
 

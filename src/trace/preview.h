@@ -11,11 +11,13 @@ struct PreviewOptions {
   int samples = 4;              ///< rays a pixel, a square number, for antialiasing
 };
 
-/// Luminance in nits for each pixel: emission + reflectance * irradiance / pi on the side that is seen, the sky's
-/// luminance where nothing is hit. Looks through the scene's first camera, or one that frames it (`frame_camera`).
+/// Luminance in nits for each pixel: emission + reflectance * irradiance / pi on the side that is seen, the
+/// sky's luminance where nothing is hit. Looks through the scene's first camera, or one that frames it
+/// (`frame_camera`).
 FloatImage render_preview(const Scene& scene, const Lighting& lighting, const PreviewOptions& options);
 
-/// A camera that shows the whole scene: from inside if it is a closed room, else from outside, above and in front.
+/// A camera that shows the whole scene: from inside if it is a closed room, else from outside, above and in
+/// front.
 Camera frame_camera(const Scene& scene);
 
 }  // namespace goldthread

@@ -16,7 +16,8 @@ class Layout {
     parallel_for(forest.components.size(), [&](size_t c) { place_component(c); });
   }
 
-  const std::vector<uint32_t>& slot_order() const { return slot_order_; }
+  /// Which slot comes where in the final order.
+  std::vector<uint32_t> take_slot_order() { return std::move(slot_order_); }
 
  private:
   const Merge& merge_named(const MergeForest::Component& component, ClusterRef name) const {
@@ -69,7 +70,7 @@ class Layout {
 
   const MergeForest& forest_;
   FaceClusterTree& tree_;
-  std::vector<uint32_t> slot_order_;  ///< which slot comes where in the final order
+  std::vector<uint32_t> slot_order_;
   std::vector<uint32_t> node_of_merge_;
 };
 
@@ -77,11 +78,7 @@ class Layout {
 
 FaceClusterTree lay_out(TriangleMesh mesh, MergeForest forest) {
   FaceClusterTree tree;
-  std::vector<uint32_t> order;
-  {
-    const Layout layout(forest, tree);
-    order = layout.slot_order();
-  }
+  std::vector<uint32_t> order = Layout(forest, tree).take_slot_order();
   parallel_for(
       order.size(), [&](size_t i) { order[i] = forest.triangle_at[order[i]]; }, 16384);
   forest = {};

@@ -77,8 +77,11 @@ class ElementPool {
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
   void expand(std::span<const ElementId> ids);
 
-  /// Point i of `count` (1, 2, 4, 8 or 16) that are spread evenly by area over the element's real triangles.
-  SurfacePoint sample(ElementId id, uint32_t i, uint32_t count = kStoredSamples) const;
+  /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face cluster.
+  const SurfacePoint& stored_sample(ElementId id, uint32_t i) const { return samples_[elements_[id].samples + i]; }
+  /// 4, 8 or 16 points of equal weight whose mean value is that of the element's surface: chosen from the stored samples of
+  /// clusters; on triangles and patches exact for functions of second degree.
+  void quadrature(ElementId id, std::span<SurfacePoint> points) const;
   /// Any point: u selects by area, v moves within. For more samples than are stored.
   SurfacePoint sample_at(ElementId id, float u, float v) const;
   /// A direction within a sky element.
@@ -125,6 +128,7 @@ class ElementPool {
   SurfacePoint sample_cluster(const Element& element, ClusterRef ref, float u, float v) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
   SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
+  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points) const;
   Polygon triangle_polygon(const Element& element, uint32_t triangle) const;
   Polygon patch_polygon(const Element& element) const;
 

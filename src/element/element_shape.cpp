@@ -171,15 +171,59 @@ void ElementPool::fill_samples(ElementId id) {
   }
 }
 
-SurfacePoint ElementPool::sample(ElementId id, uint32_t i, uint32_t count) const {
+void ElementPool::quadrature(ElementId id, std::span<SurfacePoint> points) const {
   const Element& element = elements_[id];
-  if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster)
-    return samples_[element.samples + (i * (kStoredSamples / count)) % kStoredSamples];
-  // The middles of a grid of equal areas: smooth transfers are met to second order, which random points are not.
-  const uint32_t columns = count >= 8 ? 4 : count >= 2 ? 2 : 1, rows = std::max(1u, count / columns);
-  const float u = (static_cast<float>(i % columns) + 0.5f) / static_cast<float>(columns);
-  const float v = (static_cast<float>(i / columns % rows) + 0.5f) / static_cast<float>(rows);
-  return sample_at(id, u, v);
+  if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster) {
+    const size_t stride = kStoredSamples / points.size();
+    for (size_t i = 0; i < points.size(); ++i) points[i] = samples_[element.samples + i * stride];
+    return;
+  }
+  polygon_quadrature(polygon(id), normalize_or(element.summed_normal, vec3(0, 1, 0)), points);
+}
+
+// Points whose mean and covariance are the polygon's own, so that any quadratic is integrated exactly. Form factors are
+// convex towards a shared edge: random points would be noisy, and the midpoint rule would lose light everywhere.
+void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points) const {
+  const vec3& a = polygon.corners[0];
+  const vec3 u = normalize_or(polygon.corners[1] - a, vec3(1, 0, 0)), v = cross(normal, u);
+  vec2 mean(0);
+  double xx = 0, xy = 0, yy = 0, area = 0;
+  for (size_t i = 1; i + 1 < polygon.count; ++i) {
+    const vec3 d1 = polygon.corners[i] - a, d2 = polygon.corners[i + 1] - a;
+    const dvec2 p(dot(d1, u), dot(d1, v)), q(dot(d2, u), dot(d2, v));
+    const double w = std::abs(p.x * q.y - p.y * q.x) / 2;
+    // Second moments of a triangle with a corner at the origin.
+    xx += w * (p.x * p.x + p.x * q.x + q.x * q.x) / 6;
+    yy += w * (p.y * p.y + p.y * q.y + q.y * q.y) / 6;
+    xy += w * (2 * p.x * p.y + p.x * q.y + q.x * p.y + 2 * q.x * q.y) / 12;
+    mean += vec2(w * (p + q) / 3.0);
+    area += w;
+  }
+  if (!(area > 0)) {
+    for (SurfacePoint& point : points) point = {a, normal};
+    return;
+  }
+  mean /= static_cast<float>(area);
+  const double cxx = std::max(0.0, xx / area - double(mean.x) * double(mean.x)),
+               cyy = std::max(0.0, yy / area - double(mean.y) * double(mean.y)),
+               cxy = xy / area - double(mean.x) * double(mean.y);
+  const double angle = 0.5 * std::atan2(2 * cxy, cxx - cyy), half = std::sqrt((cxx - cyy) * (cxx - cyy) / 4 + cxy * cxy);
+  const auto s1 = static_cast<float>(std::sqrt((cxx + cyy) / 2 + half));
+  const auto s2 = static_cast<float>(std::sqrt(std::max(0.0, (cxx + cyy) / 2 - half)));
+  const vec2 e1(std::cos(angle), std::sin(angle)), e2(-e1.y, e1.x);
+  // Rings of four: at the corners of the standard deviations' rectangle, and on their axes, root two further out. A corner
+  // of the first may touch a triangle's edge; a hair's breadth keeps it inside.
+  for (size_t i = 0; i < points.size(); ++i) {
+    const float f = 0.995f, x = (i & 1) != 0 ? f : -f, y = (i & 2) != 0 ? f : -f;
+    vec2 offset;
+    if ((i & 4) == 0) {
+      offset = x * s1 * e1 + y * s2 * e2;
+    } else {
+      offset = (i & 2) != 0 ? 1.41421356f * x * s1 * e1 : 1.41421356f * x * s2 * e2;
+    }
+    const vec2 p = mean + offset;
+    points[i] = {a + p.x * u + p.y * v, normal};
+  }
 }
 
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {

@@ -98,7 +98,7 @@ struct Sweep {
     vec3 irradiance = direct;
     if (e.kind == ElementKind::kCluster && e.cone_cosine < 0.95f) {
       for (uint32_t i = 0; i < kStoredSamples; ++i)
-        irradiance += inherited.on(pool.sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
+        irradiance += inherited.on(pool.stored_sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
     } else {
       irradiance += inherited.on(e.summed_normal / std::max(e.area, 1e-30f));
     }

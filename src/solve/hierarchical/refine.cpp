@@ -12,6 +12,14 @@ enum class Decision : uint8_t { kKeep, kReceiver, kSource, kBoth };
 
 bool is_light(ElementKind kind) { return kind == ElementKind::kPoint || kind == ElementKind::kSun; }
 
+bool is_surface(ElementKind kind) { return kind <= ElementKind::kPatch; }
+
+// Share of what could pass between two touching elements that counts as error.
+constexpr double kNearError = 0.05;
+
+// The share of the scene's area below which a receiver's link to an uneven source counts no less.
+constexpr double kSourceShare = 0.1;
+
 bool divisible(const Element& e) {
   return e.first_child != kNoElement || (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
 }
@@ -31,7 +39,7 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
   const LinkError error = estimate_error(pool, state, link);
-  if (error.total() <= options.power_error) return Decision::kKeep;
+  if (error.weighed() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area), source = may_open_source(s, options.least_area);
   if (self) return receiver ? Decision::kBoth : Decision::kKeep;
   if (!receiver && !source) return Decision::kKeep;
@@ -39,8 +47,9 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const bool r_box = r.kind == ElementKind::kVolume, s_box = s.kind == ElementKind::kVolume;
   if (r_box != s_box) return r_box ? Decision::kReceiver : Decision::kSource;
   if (r_box) return r.radius >= s.radius ? Decision::kReceiver : Decision::kSource;
-  if (error.receiver >= error.source)
-    return receiver ? Decision::kReceiver : (error.source > options.power_error ? Decision::kSource : Decision::kKeep);
+  const double from_source = error.source * error.source_weight;
+  if (error.receiver >= from_source)
+    return receiver ? Decision::kReceiver : (from_source > options.power_error ? Decision::kSource : Decision::kKeep);
   return source ? Decision::kSource : (error.receiver > options.power_error ? Decision::kReceiver : Decision::kKeep);
 }
 
@@ -115,12 +124,22 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
     error.receiver = b * std::min(guess, is_light(s.kind) ? 1e30 : 1.0) * area;
     return error;
   }
+  // Where two elements nearly touch, most of what passes between them passes where they do, and samples elsewhere see
+  // neither it nor each other's doubts: a link kept because its samples happened to be small would lose light.
+  const float reach = r.radius + s.radius;
+  const vec3 apart = s.centre - r.centre;
+  if (is_surface(s.kind) && dot(apart, apart) < reach * reach)
+    error.receiver += kNearError * b * static_cast<double>(std::min(r.area, s.area));
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
   const double missed = unoccluded * (0.25 / (link.rays + 2.0));
-  error.receiver = b * area * (0.5 * static_cast<double>(link.spread) + missed);
+  error.receiver += b * area * (0.5 * static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-  error.source = 0.25 * range * static_cast<double>(link.mean) * area;
+  // Light is brighter where it comes nearer, so a source taken as even errs to one side for every receiver: small
+  // receivers do not make that error small, as they do random ones.
+  const double least = kSourceShare * static_cast<double>(pool[pool.root()].area);
+  error.source = 0.5 * range * static_cast<double>(link.mean) * area;
+  error.source_weight = std::max(1.0, least / std::max(area, 1e-300));
   if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
   return error;

@@ -24,7 +24,9 @@ struct RefineCounters {
 struct LinkError {
   double receiver = 0;  ///< transfer or visibility varies over the receiver
   double source = 0;    ///< radiosity varies over the source
+  double source_weight = 1;  ///< by how much the source's part counts more when deciding, since it errs to one side
   double total() const { return receiver + source; }
+  double weighed() const { return receiver + source * source_weight; }
 };
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 

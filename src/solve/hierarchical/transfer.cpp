@@ -99,7 +99,7 @@ vec3 volume_transfer(const ElementPool& pool, ElementId source, const vec3& x, c
   const float area = pool[source].area / static_cast<float>(kStoredSamples);
   vec3 sum(0);
   for (uint32_t i = 0; i < kStoredSamples; ++i) {
-    const SurfacePoint y = pool.sample(source, i);
+    const SurfacePoint& y = pool.stored_sample(source, i);
     const vec3 d = y.position - x;
     const float cosine = -dot(d, y.normal);
     if (cosine <= 0 || dot(d, n) <= 0) continue;
@@ -240,7 +240,7 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
       // Stored samples suffice for few rays, and spare the descent.
       const bool stored = rays < kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
       const SurfacePoint y =
-          stored ? pool.sample(source, (i * kStoredSamples) / rays + turn % std::max(1u, kStoredSamples / rays))
+          stored ? pool.stored_sample(source, (i * kStoredSamples) / rays + turn % std::max(1u, kStoredSamples / rays))
                  : pool.sample_at(source, uv.u, uv.v);
       const vec3 d = y.position - x;
       const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
@@ -278,8 +278,10 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   uint32_t rays = 0, facing = 0;
   std::array<float, kStoredSamples> received{};
   std::array<vec3, kStoredSamples> normals;
+  std::array<SurfacePoint, kStoredSamples> at;
+  pool.quadrature(receiver, {at.data(), points});
   for (uint32_t i = 0; i < points; ++i) {
-    const SurfacePoint x = pool.sample(receiver, i, points);
+    const SurfacePoint& x = at[i];
     normals[i] = x.normal;
     const vec3 m = point_transfer(pool, source, x.position, x.normal);
     const float here = dot(m, x.normal);

@@ -149,7 +149,7 @@ TEST_P(EveryScene, IsTheSameEveryTime) {
 
 TEST(Procedural, CornellBoxIsThePublishedOne) {
   const Scene scene = make("cornell-box");
-  EXPECT_EQ(scene.triangle_count(), 36u);
+  EXPECT_EQ(scene.triangle_count(), 38u);
   EXPECT_NEAR(scene.bounds().high.x, 0.556f, 1e-6f);
   EXPECT_NEAR(scene.bounds().high.y, 0.5488f, 1e-6f);
   EXPECT_NEAR(scene.bounds().high.z, 0.5592f, 1e-6f);

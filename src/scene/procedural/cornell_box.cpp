@@ -47,7 +47,7 @@ void add_blocks(Scene& scene, uint32_t white, int rate) {
 }  // namespace
 
 Scene cornell_box(uint64_t triangles) {
-  constexpr uint64_t kPublished = 36;
+  constexpr uint64_t kPublished = 38;
   const int rate = rate_for(triangles, kPublished);
   Scene scene;
   const uint32_t white = add_material(scene, "white", {0.725f, 0.71f, 0.68f});

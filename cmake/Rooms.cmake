@@ -2,7 +2,7 @@
 set(GOLDTHREAD_WARNINGS -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual
     -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wimplicit-fallthrough -Werror
     # g++ 12 sees overlapping copies in std::string at -O3 where there are none (GCC bug 105651).
-    -Wno-restrict)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
 # Contraction into fused multiply-adds would let results depend on how the compiler inlines; off, so that the
 # same source gives the same bytes with every preset of one compiler.

@@ -68,6 +68,14 @@ void complete_sun(std::vector<std::string>& arguments) {
   }
 }
 
+/// An Error when the first argument should be a verb and is none; CLI11 would only say that one is required.
+Status check_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return Nothing{};
+  const auto is_it = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
+  if (!app.get_subcommands(is_it).empty()) return Nothing{};
+  return usage_error("there is no verb '" + arguments[0] + "'", "choose make, info or bake");
+}
+
 void add_make(CLI::App& app, MakeCommand& make) {
   std::string scenes = "one of:";
   for (const auto& [name, sentence] : scene_names()) scenes += fmt::format("\n{:<14}{}", name, sentence);
@@ -214,6 +222,7 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   add_bake_light(*bake_verb, texts);
   bake_verb->footer(kBakeExamples);
 
+  if (const Status status = check_verb(app, arguments); !status) return status.error();
   complete_sun(arguments);
   std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
   try {

@@ -68,7 +68,8 @@ int run(const BakeCommand& command) {
 }
 
 int run_program(int count, char** values) {
-  const Result<Command> command = parse_arguments(std::vector<std::string>(values + (count > 0), values + count));
+  const Result<Command> command =
+      parse_arguments(std::vector<std::string>(values + (count > 0), values + count));
   if (!command) return fail(command.error());
   return std::visit([](const auto& verb) { return run(verb); }, *command);
 }

@@ -50,8 +50,8 @@ std::string describe(const BakeEvent& event) {
   if (event.error_estimate > 0) text += fmt::format("  error {:.2g}%", 100 * event.error_estimate);
   if (event.remaining_seconds >= 0)
     text += "  " + time_text(event.remaining_seconds) + " left";
-  else
-    text += "  " + time_text(event.seconds);
+  else if (event.seconds >= 1)
+    text += "  " + time_text(std::floor(event.seconds));
   return text;
 }
 

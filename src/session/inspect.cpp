@@ -19,6 +19,7 @@ struct LightFacts {
   double emissive_area = 0;
   double emitted_power = 0;  ///< lumen, of surfaces, both sides where two-sided
   double reflectance_sum = 0;
+  std::vector<uint8_t> too_bright;  ///< per material: 1 where a triangle reflects more than the solver allows
   float least_reflectance = 1, most_reflectance = 0;  ///< luminance
 
   double mean_reflectance() const { return area > 0 ? reflectance_sum / area : 0; }
@@ -71,6 +72,8 @@ void add_light(const Scene& scene, const Instance& instance, const Primitive& p,
     const TrianglePaint paint = paint_of(scene, p, i);
     facts.area += area;
     const float reflectance = luminance(paint.reflectance), emission = luminance(paint.emission);
+    if (std::max({paint.reflectance.x, paint.reflectance.y, paint.reflectance.z}) > kMaxReflectance)
+      facts.too_bright[p.material] = 1;
     facts.reflectance_sum += area * double(reflectance);
     facts.least_reflectance = std::min(facts.least_reflectance, reflectance);
     facts.most_reflectance = std::max(facts.most_reflectance, reflectance);
@@ -83,6 +86,7 @@ void add_light(const Scene& scene, const Instance& instance, const Primitive& p,
 SceneFacts gather_facts(const Scene& scene) {
   SceneFacts facts;
   facts.bounds = scene.bounds();
+  facts.light.too_bright.assign(scene.materials.size(), 0);
   std::vector<uint64_t> copies(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) {
     ++copies[instance.mesh];
@@ -94,10 +98,8 @@ SceneFacts gather_facts(const Scene& scene) {
   const ShellCheck check(scene);
   for (uint32_t m = 0; m < scene.meshes.size(); ++m)
     if (copies[m] > 0) add_facts(facts.mesh, measure_mesh(scene, m, check), copies[m]);
-  for (const Material& material : scene.materials) {
-    const vec3 reflectance = material.base_colour * (1 - material.metallic);
-    if (std::max({reflectance.x, reflectance.y, reflectance.z}) > kMaxReflectance) ++facts.clamped_materials;
-  }
+  facts.clamped_materials =
+      uint64_t(std::count(facts.light.too_bright.begin(), facts.light.too_bright.end(), 1));
   return facts;
 }
 

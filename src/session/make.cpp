@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include "files/scene_write.h"
 #include "goldthread/bake.h"
 #include "scene/procedural.h"
@@ -5,6 +7,11 @@
 namespace goldthread {
 
 Result<uint64_t> make_scene(const MakeOptions& options) {
+  const std::string extension = std::filesystem::path(options.output).extension().string();
+  if (extension != ".glb" && extension != ".gltf") {
+    return Error{ErrorCode::kUsage, "cannot tell the output's format", options.output, "",
+                 "end it in .glb or .gltf"};
+  }
   const Result<Scene> scene = build_procedural(options.name, options.triangles);
   if (!scene) return scene.error();
   const Status status = write_scene(options.output, *scene);
@@ -12,6 +19,8 @@ Result<uint64_t> make_scene(const MakeOptions& options) {
   return uint64_t{scene->triangle_count()};
 }
 
-std::vector<std::pair<std::string, std::string>> scene_names() { return procedural_names(); }
+std::vector<std::pair<std::string, std::string>> scene_names() {
+  return procedural_names();
+}
 
 }  // namespace goldthread

@@ -1,0 +1,126 @@
+"""The command line's contract: exit codes, one-line errors, quiet, progress, interruption. Argument: the program."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/bin/goldthread"
+PROGRAM = str(Path(PROGRAM).resolve())
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def run_it(self, *arguments):
+        return subprocess.run([PROGRAM, *arguments], cwd=self.folder.name, capture_output=True, text=True, timeout=300)
+
+    def path(self, name):
+        return Path(self.folder.name) / name
+
+    def assert_fails(self, code, words, *arguments):
+        done = self.run_it(*arguments)
+        self.assertEqual(done.returncode, code, (arguments, done.stderr))
+        errors = [line for line in done.stderr.splitlines() if line.startswith("goldthread: ")]
+        self.assertEqual(len(errors), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, errors[0])
+
+    def test_help_and_version(self):
+        self.assertIn("Examples:", self.run_it("--help").stdout)
+        for verb in ("make", "info", "bake"):
+            done = self.run_it(verb, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn("--help", done.stdout)
+        self.assertRegex(self.run_it("--version").stdout, r"^goldthread \d+\.\d+\.\d+\n$")
+
+    def test_wrong_usage_is_2(self):
+        self.assert_fails(2, ["--help"])
+        self.assert_fails(2, ["verb", "polish"], "polish", "x.glb")
+        self.assert_fails(2, ["teapot", "cornell-box"], "make", "teapot")
+        self.assert_fails(2, ["x.txt", ".glb"], "make", "furnace", "-o", "x.txt")
+        self.assert_fails(2, ["--triangles"], "make", "car", "--triangles", "many")
+        self.assert_fails(2, ["-o"], "bake", "x.glb")
+        self.assert_fails(2, ["--quality"], "bake", "x.glb", "-o", "y.glb", "--quality", "best")
+        self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "2X")
+        self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "-1")
+        self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "1,2")
+        self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "nan")
+        self.assert_fails(2, ["--time-limit"], "bake", "x.glb", "-o", "y.glb", "--time-limit", "0")
+        self.assert_fails(2, ["--picture-size"], "bake", "x.glb", "-o", "y.png", "--picture-size", "960x")
+        self.assert_fails(2, ["--sun"], "bake", "x.glb", "-o", "y.glb", "--sun-azimuth", "10")
+
+    def test_bad_input_is_3(self):
+        self.path("empty.glb").write_bytes(b"")
+        for verb in (["info"], ["bake", "-o", "y.glb"]):
+            self.assert_fails(3, ["nope.glb"], *verb, "nope.glb")
+            self.assert_fails(3, ["empty.glb"], *verb, "empty.glb")
+        self.assertFalse(self.path("y.glb").exists())
+
+    def test_nothing_to_bake_is_4(self):
+        self.path("dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assert_fails(4, ["dark.obj", "--sky"], "bake", "dark.obj", "-o", "y.glb")
+
+    def test_cannot_write_is_6(self):
+        self.assert_fails(6, ["gone/x.glb"], "make", "furnace", "-o", "gone/x.glb")
+        self.run_it("make", "furnace")
+        self.assert_fails(6, ["gone/x.glb"], "bake", "furnace.glb", "-o", "gone/x.glb")
+        if os.path.exists("/dev/full"):
+            self.assert_fails(6, ["/dev/full"], "info", "furnace.glb", "--json", "/dev/full")
+
+    def test_make_and_info(self):
+        done = self.run_it("make", "sphere", "--triangles", "2000", "-o", "ball.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("2000 triangles", done.stdout)
+        self.assertEqual(self.run_it("info", "ball.glb", "--json", "ball.json").returncode, 0)
+        facts = json.loads(self.path("ball.json").read_text())
+        self.assertEqual(facts["triangles"], 2000)
+        self.assertEqual(facts["shells"], {"count": 1, "closed": 1})
+        self.assertEqual(facts["problems"]["inside_out_shells"], 0)  # a room, for the camera is in it
+        self.assertAlmostEqual(facts["reflectance"]["mean"], 0.5, places=5)
+        self.assertIn("2000", self.run_it("info", "ball.glb").stdout)
+        quiet = self.run_it("make", "furnace", "--quiet")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+        self.assertTrue(self.path("furnace.glb").exists())
+
+    def test_bake(self):
+        self.run_it("make", "cornell-box")
+        done = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "-o", "lit.png", "--quality", "draft",
+                           "--report", "r.json", "--picture-size", "64x48", "--threads", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("wrote lit.glb", done.stdout)
+        self.assertIn("solve", done.stderr)  # plain progress lines
+        self.assertNotIn("\r", done.stderr)
+        self.assertEqual(self.path("lit.glb").read_bytes()[:4], b"glTF")
+        self.assertEqual(self.path("lit.png").read_bytes()[1:4], b"PNG")
+        self.assertGreater(json.loads(self.path("r.json").read_text())["power_lm"]["emitted"], 0)
+        quiet = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "--quality", "draft", "--quiet")
+        self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    def test_sun_stands_alone_before_the_scene(self):
+        self.run_it("make", "cornell-box")
+        done = self.run_it("bake", "--quality", "draft", "-o", "lit.glb", "--sun", "cornell-box.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_interrupted_bake_writes_what_there_is_and_is_130(self):
+        self.run_it("make", "office")
+        bake = subprocess.Popen([PROGRAM, "bake", "office.glb", "-o", "lit.glb", "--quality", "final"],
+                                cwd=self.folder.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(2)
+        if bake.poll() is not None:
+            self.skipTest("too fast to be interrupted")
+        bake.send_signal(signal.SIGINT)
+        bake.communicate(timeout=60)
+        self.assertEqual(bake.returncode, 130)
+        self.assertEqual(self.path("lit.glb").read_bytes()[:4], b"glTF")
+
+
+if __name__ == "__main__":
+    unittest.main()

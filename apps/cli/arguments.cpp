@@ -43,6 +43,7 @@ const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
 template <typename Value>
 std::vector<std::string> names_of(const std::vector<std::pair<std::string, Value>>& table) {
   std::vector<std::string> names;
+  names.reserve(table.size());
   for (const auto& entry : table) names.push_back(entry.first);
   return names;
 }

@@ -25,7 +25,7 @@ vec3 gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, 
   vec3 sum(0);
   for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
     for (const Link& link : solver.links().into(id)) {
-      const vec3& b = state.radiosity[link.source];
+      const vec3 b = seen_radiosity(pool, link, state.shown);
       const float most = largest(b);
       if (most <= 0) continue;
       const vec3 m = point_transfer(pool, link.source, x, n);

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "reconstruct/final_gather.h"
+#include "reconstruct/interpolate.h"
 #include "reconstruct/light_points.h"
 
 namespace goldthread {
@@ -36,13 +37,11 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
 
 // Points on an edge are drawn a little into their face: at the edge itself, a wall that stands on a floor is neither
 // before nor behind it.
-vec3 drawn_in(const LightPoint& point, const PartPoints& points, const vec3& n, float epsilon) {
+vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) {
   const vec3 way = points.face_centres[point.face] - point.position;
   const float distance = length(way);
   const float step = std::min(0.5f * distance, std::max(0.01f * distance, 4 * epsilon));
-  vec3 moved = point.position + way * (distance > 0 ? step / distance : 0.0f);
-  (void)n;
-  return moved;
+  return point.position + way * (distance > 0 ? step / distance : 0.0f);
 }
 
 std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints& points,
@@ -51,23 +50,26 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
   std::vector<vec3> light = average_side(solver, points, leaves, back);
   const GatherOptions gather{options.light_rays, options.ray_share};
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
+  const KeyPoints keys(solver, points, leaves, back);
   parallel_for(
-      points.points.size(),
-      [&](size_t i) {
+      keys.keys().size(),
+      [&](size_t k) {
+        const uint32_t i = keys.keys()[k];
         if (cancel.cancelled()) return;
         const LightPoint& point = points.points[i];
         const ElementId leaf = leaves[point.face];
         if (leaf == kNoElement) return;
         const vec3 n = back ? -point.normal : point.normal;
         RayCount count;
-        light[i] = gather_at(solver, leaf, drawn_in(point, points, n, solver.visibility().epsilon), n, gather,
-                             hash(static_cast<uint32_t>(i), 77), count);
+        light[i] = gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
+                             hash(i, 77), count);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
       },
       32);
   stats.rays += {rays.load(), nanoseconds.load()};
-  stats.points += points.points.size();
+  stats.points += keys.keys().size();
+  if (!cancel.cancelled()) keys.interpolate(light);
   return light;
 }
 

@@ -72,7 +72,8 @@ void add_shell(Scene& scene, const OfficeMaterials& m, int rate) {
 }
 
 void add_partitions(Scene& scene, const OfficeMaterials& m, int rate) {
-  constexpr double t = kPartitionThickness, kLength = 2.4, kFoot = 0.05;
+  constexpr double kLength = 2.4, kFoot = 0.05;
+  const double t = kPartitionThickness;
   Primitive out;
   add_box(out, {kCubicleX - t, kFoot, kCubicleZ - t},
           {kCubicleX + 2 * kCubicleWidth + 2 * t, kPartitionHeight, kCubicleZ}, 4 * rate);

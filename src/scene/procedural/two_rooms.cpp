@@ -32,7 +32,7 @@ struct RoomLook {
 /// A room whose corner is at lattice x = x0; its door is in the wall at +x or at -x.
 void add_room(Scene& scene, const std::string& name, int x0, bool door_at_high_x, const RoomLook& look,
               int rate) {
-  constexpr int s = kRoomSide, h = kRoomHeight;
+  const int s = kRoomSide, h = kRoomHeight;
   const auto add = [&](const char* part, const LatticeRectangle& r, uint32_t material,
                        const Cells& is_hole = {}) {
     Primitive out;
@@ -51,7 +51,7 @@ void add_room(Scene& scene, const std::string& name, int x0, bool door_at_high_x
 }
 
 void add_corridor(Scene& scene, uint32_t wall, uint32_t floor, uint32_t light, int rate) {
-  constexpr int x = kRoomSide, z = kDoorFirst, w = kDoorWidth, l = kCorridorLength, h = kDoorHeight;
+  const int x = kRoomSide, z = kDoorFirst, w = kDoorWidth, l = kCorridorLength, h = kDoorHeight;
   const auto is_light = [](int column, int row) {
     return (column == l / 2 || column == l / 2 - 1) && (row == w / 2 || row == w / 2 - 1);
   };

@@ -11,6 +11,8 @@ void RadiosityState::grow_to(const ElementPool& pool) {
   const size_t before = radiosity.size(), count = pool.size();
   radiosity.resize(count);
   irradiance.resize(count, vec3(0));
+  shown.resize(count);
+  openness.resize(count);
   low.resize(count);
   high.resize(count);
   vector.resize(count, mat3(0));
@@ -23,16 +25,22 @@ void RadiosityState::grow_to(const ElementPool& pool) {
       ambient[i] = ambient[e.parent];
     }
     radiosity[i] = e.exitance + e.reflectance * irradiance[i];
+    shown[i] = radiosity[i];
+    openness[i] = e.area;
     low[i] = high[i] = largest(radiosity[i]);
   }
 }
 
 namespace {
 
+constexpr float kLeastOpenness = 1e-3f;
+constexpr float kBuried = 0.02f;
+
 // Irradiance vectors by octant of the direction they come from; a column a colour channel.
 struct Octants {
   std::array<mat3, 8> sum{};
   vec3 ambient{0};  // what falls on every normal alike
+  float faced = 0, seen = 0;  // form factors, without and with occlusion
   uint32_t used = 0;
 
   void add(const vec3& transfer, float even, const vec3& radiosity) {
@@ -68,15 +76,17 @@ struct Sweep {
   const ElementPool& pool;
   const LinkPool& links;
   RadiosityState& state;
-  const std::vector<vec3>& old;  // radiosity before the sweep: the order of visits must not matter
+  const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
   float visit(ElementId id, const Octants& inherited) const {
     Octants octants = inherited;
     vec3 direct(0);
     for (const Link& link : links.into(id)) {
+      octants.faced += link.unoccluded;
+      octants.seen += link.mean;
       if (link.mean <= 0) continue;
-      const vec3& b = old[link.source];
+      const vec3 b = seen_radiosity(pool, link, old);
       octants.add(link.transfer, link.ambient, b);
       direct += link.mean * b;
     }
@@ -105,6 +115,8 @@ struct Sweep {
     const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;
+    state.shown[id] = state.radiosity[id];
+    state.openness[id] = e.area * (all.faced > 0 ? std::clamp(all.seen / all.faced, kLeastOpenness, 1.0f) : 1.0f);
     state.low[id] = state.high[id] = largest(state.radiosity[id]);
     state.vector[id] = all.facing(e.summed_normal);
     state.ambient[id] = all.ambient;
@@ -117,8 +129,14 @@ struct Sweep {
     const float share = total > 0 ? pool[a].area / total : 0.5f;
     state.radiosity[id] = share * state.radiosity[a] + (1 - share) * state.radiosity[b];
     state.irradiance[id] = share * state.irradiance[a] + (1 - share) * state.irradiance[b];
-    state.low[id] = std::min(state.low[a], state.low[b]);
-    state.high[id] = std::max(state.high[a], state.high[b]);
+    const float open = state.openness[a] + state.openness[b];
+    const float open_share = open > 0 ? state.openness[a] / open : share;
+    state.openness[id] = open;
+    state.shown[id] = open_share * state.shown[a] + (1 - open_share) * state.shown[b];
+    // What is all but buried has no say in how even the rest is.
+    const bool a_counts = state.openness[a] > kBuried * pool[a].area, b_counts = state.openness[b] > kBuried * pool[b].area;
+    state.low[id] = a_counts != b_counts ? state.low[a_counts ? a : b] : std::min(state.low[a], state.low[b]);
+    state.high[id] = a_counts != b_counts ? state.high[a_counts ? a : b] : std::max(state.high[a], state.high[b]);
   }
 };
 
@@ -133,7 +151,7 @@ glm::dvec3 landing(const ElementPool& pool, const RadiosityState& state, Element
 
 double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state) {
   if (pool.root() == kNoElement) return 0;
-  const std::vector<vec3> old = state.radiosity;
+  const std::vector<vec3> old = state.shown;
   const Sweep sweep{pool, links, state, old};
   const float change = sweep.visit(pool.root(), Octants{});
   const vec3 all = landing_power(pool, state);

@@ -15,10 +15,10 @@ bool is_light(ElementKind kind) { return kind == ElementKind::kPoint || kind == 
 bool is_surface(ElementKind kind) { return kind <= ElementKind::kPatch; }
 
 // Share of what could pass between two touching elements that counts as error.
-constexpr double kNearError = 0.05;
+constexpr double kNearError = 0.02;
 
 // The share of the scene's area below which a receiver's link to an uneven source counts no less.
-constexpr double kSourceShare = 0.1;
+constexpr double kSourceShare = 0.03;
 
 bool divisible(const Element& e) {
   return e.first_child != kNoElement || (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
@@ -89,6 +89,23 @@ void list_children(const ElementPool& pool, const Link& link, Decision decision,
   }
 }
 
+// Weighs the halves of sources that are unevenly bright and have been opened since their links were made.
+void split_sources(const ElementPool& pool, const RadiosityState& state, std::vector<Link>& links,
+                   const RefineOptions& options) {
+  parallel_for(
+      links.size(),
+      [&](size_t i) {
+        Link& link = links[i];
+        const Element& s = pool[link.source];
+        if (!link.alive || link.front_share >= 0 || s.first_child == kNoElement || link.mean <= 0) return;
+        if (s.kind == ElementKind::kVolume || s.kind == ElementKind::kSky || link.receiver == link.source) return;
+        const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
+        const double area = static_cast<double>(std::max(pool[link.receiver].area, 0.01f * pool[pool.root()].area));
+        if (range * static_cast<double>(link.mean) * area > 0.05 * options.power_error) split_source(pool, link);
+      },
+      64);
+}
+
 // Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes kKeep: its
 // link comes up again in the next wave with the other side.
 void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
@@ -110,7 +127,7 @@ void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<
 
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
-  const auto b = static_cast<double>(largest(state.radiosity[link.source]));
+  const auto b = static_cast<double>(largest(state.shown[link.source]));
   const auto area = static_cast<double>(r.area);
   LinkError error;
   if (b <= 0) return error;
@@ -133,12 +150,16 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
   const double missed = unoccluded * (0.25 / (link.rays + 2.0));
-  error.receiver += b * area * (0.5 * static_cast<double>(link.spread) + missed);
-  const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
+  error.receiver += b * area * (1.0 * static_cast<double>(link.spread) + missed);
+  double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
+  if (link.front_share >= 0) {
+    const ElementId c = s.first_child;
+    range = 0.5 * static_cast<double>(std::max(state.high[c] - state.low[c], state.high[c + 1] - state.low[c + 1]));
+  }
   // Light is brighter where it comes nearer, so a source taken as even errs to one side for every receiver: small
   // receivers do not make that error small, as they do random ones.
   const double least = kSourceShare * static_cast<double>(pool[pool.root()].area);
-  error.source = 0.5 * range * static_cast<double>(link.mean) * area;
+  error.source = 0.25 * range * static_cast<double>(link.mean) * area;
   error.source_weight = std::max(1.0, least / std::max(area, 1e-300));
   if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
@@ -154,6 +175,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   for (size_t i = 0; i < active.size(); ++i) active[i] = i;
   std::vector<Decision> decisions;
   std::vector<Child> children;
+  split_sources(pool, state, all, options);
   while (!active.empty() && !cancel.cancelled()) {
     decisions.assign(active.size(), Decision::kKeep);
     parallel_for(

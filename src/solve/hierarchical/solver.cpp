@@ -80,7 +80,7 @@ double HierarchicalSolver::share_done() const {
 
 uint64_t HierarchicalSolver::memory_bytes() const {
   return pool_.memory_bytes() + links_.memory_bytes() +
-         state_.radiosity.capacity() * (3 * sizeof(vec3) + 2 * sizeof(float) + sizeof(mat3));
+         state_.radiosity.capacity() * (4 * sizeof(vec3) + 3 * sizeof(float) + sizeof(mat3));
 }
 
 vec3 emitted_power(const ElementPool& pool) {

@@ -267,6 +267,19 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
 }
 
+void split_source(const ElementPool& pool, Link& link) {
+  const ElementId child = pool[link.source].first_child;
+  std::array<SurfacePoint, 4> at;
+  pool.quadrature(link.receiver, at);
+  float front = 0, back = 0;
+  for (const SurfacePoint& x : at) {
+    front += std::max(0.0f, dot(x.normal, point_transfer(pool, child, x.position, x.normal)));
+    back += std::max(0.0f, dot(x.normal, point_transfer(pool, child + 1, x.position, x.normal)));
+  }
+  const float area = pool[child].area + pool[child + 1].area;
+  link.front_share = front + back > 0 ? front / (front + back) : (area > 0 ? pool[child].area / area : 0.5f);
+}
+
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
                uint32_t points, uint32_t rays_per_point, RayCount& ray_count) {
   Link link;

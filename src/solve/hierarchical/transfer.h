@@ -51,10 +51,22 @@ struct Link {
   float mean = 0;          ///< mean over the receiver's real triangles: irradiance per unit radiosity
   float spread = 0;        ///< largest deviation of a sample from what transfer and ambient say of its normal
   float unoccluded = 0;    ///< mean, were everything visible
+  float front_share = -1;  ///< of mean, what comes from the source's first child; negative while that is not known
   uint8_t visibility = 0;  ///< share of sample rays that got through, of 255
   uint8_t rays = 0;        ///< how many there were
   bool alive = true;
 };
+
+/// Measures `front_share` of a link whose source has children. Light is brighter where it comes nearer, so taking a source
+/// as evenly bright would lose light for every receiver; with the two halves weighed apart most of that is kept.
+void split_source(const ElementPool& pool, Link& link);
+
+/// The radiosity that a link's source shows to its receiver; `shown` is RadiosityState's.
+inline vec3 seen_radiosity(const ElementPool& pool, const Link& link, std::span<const vec3> shown) {
+  if (link.front_share < 0) return shown[link.source];
+  const ElementId child = pool[link.source].first_child;
+  return link.front_share * shown[child] + (1 - link.front_share) * shown[child + 1];
+}
 
 /// Samples the transfer with `points` receiver points of `rays_per_point` rays each. `points` 1..kStoredSamples.
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,

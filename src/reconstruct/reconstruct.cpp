@@ -24,8 +24,11 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
     for (uint32_t c = points.corner_first[f]; c < points.corner_first[f + 1]; ++c) {
       const uint32_t p = points.corners[c];
       const vec3 n = back ? -points.points[p].normal : points.points[p].normal;
-      // A flat leaf's vector holds only what its normal faces; a curved one's is turned.
-      const vec3 turned = leaf.cone_cosine > 0.95f ? solver.state().irradiance[leaves[f]] : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
+      // A flat leaf knows how its light varies with place, a curved one how it does with the normal.
+      const vec3 turned =
+          is_planar(leaf.kind)
+              ? glm::max(solver.state().irradiance[leaves[f]] + (points.points[p].position - leaf.centre) * vector, vec3(0))
+              : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
       sum[p] += turned;
       weight[p] += 1;
     }

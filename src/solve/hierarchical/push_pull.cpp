@@ -72,6 +72,18 @@ struct Octants {
   }
 };
 
+// What flat elements get from links above them: a value at the element's centre and its gradient, a column a channel.
+struct Field {
+  vec3 at_centre{0};
+  mat3 gradient{0};
+
+  Field moved(const vec3& by) const { return {at_centre + by * gradient, gradient}; }
+  void add(const Link& link, const vec3& b) {
+    at_centre += link.ambient * b;
+    for (int c = 0; c < 3; ++c) gradient[c] += b[c] * link.transfer;
+  }
+};
+
 struct Sweep {
   const ElementPool& pool;
   const LinkPool& links;
@@ -80,6 +92,8 @@ struct Sweep {
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
   float visit(ElementId id, const Octants& inherited) const {
+    const Element& e = pool[id];
+    if (is_planar(e.kind)) return visit_planar(id, inherited, {});
     Octants octants = inherited;
     vec3 direct(0);
     for (const Link& link : links.into(id)) {
@@ -90,7 +104,6 @@ struct Sweep {
       octants.add(link.transfer, link.ambient, b);
       direct += link.mean * b;
     }
-    const Element& e = pool[id];
     if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct);
     float left = 0, right = 0;
     if (e.depth < 12) {
@@ -104,22 +117,50 @@ struct Sweep {
     return left + right;
   }
 
+  float visit_planar(ElementId id, const Octants& above, Field field) const {
+    const Element& e = pool[id];
+    float faced = above.faced, seen = above.seen;
+    for (const Link& link : links.into(id)) {
+      faced += link.unoccluded;
+      seen += link.mean;
+      if (link.mean > 0) field.add(link, seen_radiosity(pool, link, old));
+    }
+    if (e.first_child == kNoElement) {
+      const vec3 n = e.summed_normal / std::max(e.area, 1e-30f);
+      state.vector[id] = field.gradient;
+      state.ambient[id] = vec3(0);
+      return settle(id, e, glm::max(above.on(n) + field.at_centre, vec3(0)), faced, seen);
+    }
+    Octants passed = above;
+    passed.faced = faced;
+    passed.seen = seen;
+    float change = 0;
+    for (uint32_t c = 0; c < 2; ++c)
+      change += visit_planar(e.first_child + c, passed, field.moved(pool[e.first_child + c].centre - e.centre));
+    pull(id, e);
+    return change;
+  }
+
   float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct) const {
     vec3 irradiance = direct;
-    if (e.kind == ElementKind::kCluster && e.cone_cosine < 0.95f) {
+    if (e.cone_cosine < 0.95f) {
       for (uint32_t i = 0; i < kStoredSamples; ++i)
         irradiance += inherited.on(pool.stored_sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
     } else {
       irradiance += inherited.on(e.summed_normal / std::max(e.area, 1e-30f));
     }
+    state.vector[id] = all.facing(e.summed_normal);
+    state.ambient[id] = all.ambient;
+    return settle(id, e, irradiance, all.faced, all.seen);
+  }
+
+  float settle(ElementId id, const Element& e, const vec3& irradiance, float faced, float seen) const {
     const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;
     state.shown[id] = state.radiosity[id];
-    state.openness[id] = e.area * (all.faced > 0 ? std::clamp(all.seen / all.faced, kLeastOpenness, 1.0f) : 1.0f);
+    state.openness[id] = e.area * (faced > 0 ? std::clamp(seen / faced, kLeastOpenness, 1.0f) : 1.0f);
     state.low[id] = state.high[id] = largest(state.radiosity[id]);
-    state.vector[id] = all.facing(e.summed_normal);
-    state.ambient[id] = all.ambient;
     return largest(change);
   }
 

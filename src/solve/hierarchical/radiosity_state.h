@@ -16,7 +16,7 @@ struct RadiosityState {
   std::vector<vec3> shown;
   std::vector<float> openness;    ///< m^2: area times the share of what a leaf faces that it also sees
   std::vector<float> low, high;   ///< least and largest radiosity (largest channel) among the open leaves below
-  std::vector<mat3> vector;       ///< of leaves: columns are the irradiance vectors of R, G, B (equation 4.13)
+  std::vector<mat3> vector;       ///< of leaves, a column a channel: irradiance vectors (equation 4.13); gradients on flat ones
   std::vector<vec3> ambient;      ///< of leaves: irradiance that every normal gets besides
 
   void grow_to(const ElementPool& pool);

@@ -60,7 +60,7 @@ struct Child {
 // How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may differ.
 void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& points, uint32_t& rays) {
   const Element &r = pool[child.receiver], &s = pool[child.source];
-  points = r.cone_cosine < 0.9f || is_light(s.kind) ? 8 : 4;
+  points = (!is_planar(r.kind) && r.cone_cosine < 0.9f) || is_light(s.kind) ? 8 : 4;
   rays = is_light(s.kind) ? 1 : r.kind == ElementKind::kVolume ? 2 : 4;
 }
 

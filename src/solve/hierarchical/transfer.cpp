@@ -280,45 +280,98 @@ void split_source(const ElementPool& pool, Link& link) {
   link.front_share = front + back > 0 ? front / (front + back) : (area > 0 ? pool[child].area / area : 0.5f);
 }
 
+namespace {
+
+// What one receiver point gets of a link's source.
+struct PointSample {
+  vec3 transfer{0};      // visibility included
+  float received = 0;
+  float unoccluded = 0;
+  uint32_t rays = 0;
+};
+
+PointSample sample_point(const ElementPool& pool, const Visibility& visibility, ElementId source, const SurfacePoint& x,
+                         uint32_t rays, uint32_t seed, RayCount& count) {
+  PointSample out;
+  out.transfer = point_transfer(pool, source, x.position, x.normal);
+  out.unoccluded = dot(out.transfer, x.normal);
+  if (out.unoccluded <= 0) return {};
+  const uint64_t before = count.rays;
+  const float v = visibility.fraction(pool, source, x.position, x.normal, rays, seed, count);
+  out.rays = static_cast<uint32_t>(count.rays - before);
+  out.transfer *= v;
+  out.received = out.unoccluded * v;
+  return out;
+}
+
+void finish(Link& link, float received, float unoccluded, uint32_t rays) {
+  link.visibility = static_cast<uint8_t>(std::lround(unoccluded > 0 ? 255 * received / unoccluded : 0));
+  link.rays = static_cast<uint8_t>(std::min(rays, 255u));
+}
+
+// A flat receiver: mean and gradient from the quadrature's inner ring, doubt from what these leave and from the centre,
+// which alone tells a bend.
+void link_planar(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
+                 RayCount& count) {
+  std::array<SurfacePoint, 9> at;
+  pool.quadrature(link.receiver, {at.data(), points});
+  at[points] = {pool[link.receiver].centre, at[0].normal};
+  std::array<PointSample, 9> sample;
+  uint32_t rays = 0;
+  for (uint32_t i = 0; i <= points; ++i) {
+    sample[i] = sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
+    rays += sample[i].rays;
+    if (i == points) break;
+    link.mean += sample[i].received / static_cast<float>(points);
+    link.unoccluded += sample[i].unoccluded / static_cast<float>(points);
+  }
+  finish(link, link.mean, link.unoccluded, rays);
+  // The ring's corners lie at -+ along two orthogonal axes.
+  const vec3 a1 = 0.5f * (at[1].position - at[0].position), a2 = 0.5f * (at[2].position - at[0].position);
+  const float g1 = (sample[1].received + sample[3].received - sample[0].received - sample[2].received) / 4;
+  const float g2 = (sample[2].received + sample[3].received - sample[0].received - sample[1].received) / 4;
+  link.ambient = link.mean;
+  link.transfer = a1 * (g1 / std::max(dot(a1, a1), 1e-30f)) + a2 * (g2 / std::max(dot(a2, a2), 1e-30f));
+  for (uint32_t i = 0; i <= points; ++i) {
+    const float said = link.mean + dot(at[i].position - pool[link.receiver].centre, link.transfer);
+    link.spread = std::max(link.spread, std::abs(sample[i].received - said));
+  }
+  // A tenth of what is linear: no light is wholly so.
+  link.spread += 0.1f * (std::abs(g1) + std::abs(g2));
+}
+
+void link_curved(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
+                 RayCount& count) {
+  std::array<SurfacePoint, kStoredSamples> at;
+  pool.quadrature(link.receiver, {at.data(), points});
+  std::array<float, kStoredSamples> received{};
+  std::array<vec3, kStoredSamples> normals;
+  uint32_t rays = 0, facing = 0;
+  for (uint32_t i = 0; i < points; ++i) {
+    const PointSample sample =
+        sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
+    normals[i] = at[i].normal;
+    received[i] = sample.received;
+    if (sample.unoccluded > 0) ++facing;
+    rays += sample.rays;
+    link.transfer += sample.transfer;
+    link.mean += sample.received / static_cast<float>(points);
+    link.unoccluded += sample.unoccluded / static_cast<float>(points);
+  }
+  // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
+  if (facing > 0) link.transfer /= static_cast<float>(facing);
+  finish(link, link.mean, link.unoccluded, rays);
+  if (pool[link.receiver].kind != ElementKind::kVolume) fit_model(link, {received.data(), points}, {normals.data(), points});
+}
+
+}  // namespace
+
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
                uint32_t points, uint32_t rays_per_point, RayCount& ray_count) {
   Link link;
   link.receiver = receiver;
   link.source = source;
-  const Element& r = pool[receiver];
-  const bool volume = r.kind == ElementKind::kVolume;
-  float seen = 0, weight = 0;
-  uint32_t rays = 0, facing = 0;
-  std::array<float, kStoredSamples> received{};
-  std::array<vec3, kStoredSamples> normals;
-  std::array<SurfacePoint, kStoredSamples> at;
-  pool.quadrature(receiver, {at.data(), points});
-  for (uint32_t i = 0; i < points; ++i) {
-    const SurfacePoint& x = at[i];
-    normals[i] = x.normal;
-    const vec3 m = point_transfer(pool, source, x.position, x.normal);
-    const float here = dot(m, x.normal);
-    if (here <= 0) continue;
-    ++facing;
-    link.unoccluded += here;
-    const uint64_t before = ray_count.rays;
-    const float v =
-        visibility.fraction(pool, source, x.position, x.normal, rays_per_point, receiver * 16 + i, ray_count);
-    rays += static_cast<uint32_t>(ray_count.rays - before);
-    seen += here * v;
-    weight += here;
-    received[i] = here * v;
-    link.transfer += m * v;
-    link.mean += here * v;
-  }
-  const float share = 1.0f / static_cast<float>(points);
-  // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
-  if (facing > 0) link.transfer /= static_cast<float>(facing);
-  link.mean *= share;
-  link.unoccluded *= share;
-  link.visibility = static_cast<uint8_t>(std::lround(weight > 0 ? 255 * seen / weight : 0));
-  link.rays = static_cast<uint8_t>(std::min(rays, 255u));
-  if (!volume) fit_model(link, {received.data(), points}, {normals.data(), points});
+  (is_planar(pool[receiver].kind) ? link_planar : link_curved)(pool, visibility, link, points, rays_per_point, ray_count);
   return link;
 }
 

@@ -63,7 +63,7 @@ class InstanceReader {
     const auto key = std::make_pair(node.mesh, pose.weights);
     const auto known = shared_.find(key);
     if (known != shared_.end()) return known->second;
-    const Result<uint32_t> mesh = append_mesh(node, pose);
+    Result<uint32_t> mesh = append_mesh(node, pose);
     if (mesh) shared_.emplace(key, *mesh);
     return mesh;
   }

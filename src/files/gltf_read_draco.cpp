@@ -118,7 +118,9 @@ class DracoExpansion {
     for (auto& [name, accessor] : primitive.attributes) {
       if (!extension.Get("attributes").Has(name)) continue;
       const int id = extension.Get("attributes").Get(name).GetNumberAsInt();
-      if (Status status = write_attribute(*mesh, view, uint32_t(id), accessor, place + " " + name); !status)
+      if (Status status =
+              write_attribute(*mesh, view, uint32_t(id), accessor, fmt::format("{} {}", place, name));
+          !status)
         return status;
     }
     primitive.mode = TINYGLTF_MODE_TRIANGLES;

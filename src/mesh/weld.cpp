@@ -97,20 +97,20 @@ std::vector<uint32_t> find_equal_positions(std::span<const vec3> positions) {
   return first_equal;
 }
 
-enum class Soundness : uint8_t { sound, not_finite, degenerate };
+enum class Soundness : uint8_t { kSound, kNotFinite, kDegenerate };
 
 /// A triangle lower than the rounding of its own coordinates has no normal worth the name: it counts as a
 /// line.
 Soundness judge(const vec3& a, const vec3& b, const vec3& c) {
-  if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return Soundness::not_finite;
+  if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return Soundness::kNotFinite;
   const dvec3 u = dvec3(b) - dvec3(a), v = dvec3(c) - dvec3(a);
   const double longest = std::sqrt(std::max({dot(u, u), dot(v, v), dot(u - v, u - v)}));
   const vec3 magnitude = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
   const double rounding = 0x1p-23 * double(std::max({magnitude.x, magnitude.y, magnitude.z}));
-  if (!(length(cross(u, v)) > rounding * longest)) return Soundness::degenerate;
+  if (!(length(cross(u, v)) > rounding * longest)) return Soundness::kDegenerate;
   const vec3 area = area_vector(a, b, c);
-  if (!is_finite(area)) return Soundness::not_finite;  // so large that its area overflows
-  return area == vec3(0) ? Soundness::degenerate : Soundness::sound;
+  if (!is_finite(area)) return Soundness::kNotFinite;  // so large that its area overflows
+  return area == vec3(0) ? Soundness::kDegenerate : Soundness::kSound;
 }
 
 std::vector<Soundness> judge_all(std::span<const vec3> positions, std::span<const uint32_t> indices,
@@ -132,7 +132,7 @@ void keep_sound(TriangleMesh& mesh, std::span<const uint32_t> indices, std::span
   std::vector<size_t> place(block_count(soundness.size()));
   for_blocks(soundness.size(), [&](size_t block, size_t first, size_t last) {
     place[block] = size_t(std::count(soundness.begin() + ptrdiff_t(first),
-                                     soundness.begin() + ptrdiff_t(last), Soundness::sound));
+                                     soundness.begin() + ptrdiff_t(last), Soundness::kSound));
   });
   size_t total = 0;
   for (size_t& p : place) total += std::exchange(p, total);
@@ -141,7 +141,7 @@ void keep_sound(TriangleMesh& mesh, std::span<const uint32_t> indices, std::span
   for_blocks(soundness.size(), [&](size_t block, size_t first, size_t last) {
     size_t out = place[block];
     for (size_t t = first; t < last; ++t) {
-      if (soundness[t] != Soundness::sound) continue;
+      if (soundness[t] != Soundness::kSound) continue;
       for (int k = 0; k < 3; ++k) mesh.triangles[out][k] = first_equal[indices[3 * t + size_t(k)]];
       mesh.source_triangles[out++] = uint32_t(t);
     }
@@ -171,8 +171,8 @@ TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> ind
   TriangleMesh mesh;
   const std::vector<uint32_t> first_equal = find_equal_positions(positions);
   const std::vector<Soundness> soundness = judge_all(positions, indices, first_equal);
-  mesh.skipped.not_finite = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::not_finite));
-  mesh.skipped.degenerate = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::degenerate));
+  mesh.skipped.not_finite = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kNotFinite));
+  mesh.skipped.degenerate = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kDegenerate));
   keep_sound(mesh, indices, first_equal, soundness);
   keep_used_positions(mesh, positions);
   return mesh;

@@ -149,6 +149,7 @@ Status Bake::load() {
   scene_ = std::move(*scene);
   add_requested_lights(scene_, options_);
   report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
+  if (options_.fix_normals) report_.warnings.push_back(fix_scene_normals(scene_));
   std::erase(report_.warnings, std::string());
   report_.seconds.load = since(start_);
   if (scene_.triangle_count() == 0)

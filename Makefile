@@ -1,6 +1,6 @@
 # The front door. `make demo` and `make test` set up all they need; a second run repeats nothing.
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test bench fuzz format lint clean
+.PHONY: help packages build program demo test bench fuzz format lint clean
 
 PROGRAM := build/release/bin/goldthread
 FUZZ_SECONDS ?= 60
@@ -25,7 +25,10 @@ build/release/build.ninja: | packages
 build: build/release/build.ninja
 	@cmake --build --preset release
 
-out/cornell-box.glb: build
+program: build/release/build.ninja
+	@cmake --build --preset release --target goldthread
+
+out/cornell-box.glb: program
 	@mkdir -p out
 	@test -f $@ -a ! $(PROGRAM) -nt $@ || $(PROGRAM) make cornell-box -o $@
 

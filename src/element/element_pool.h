@@ -30,6 +30,7 @@ enum class ElementKind : uint8_t {
 struct Element {
   ElementKind kind = ElementKind::kVolume;
   bool back = false;              ///< the other side of the source's winding
+  bool flat = false;              ///< all normals agree, here and in all children: light varies with place alone
   bool indivisible = false;       ///< has no children and will have none
   uint8_t depth = 0;
   ElementId parent = kNoElement;

@@ -7,6 +7,9 @@
 namespace goldthread {
 namespace {
 
+// Normals within two degrees of their mean are as good as one.
+constexpr float kFlatCosine = 0.9994f;
+
 // +1 when the element's side is the one from which the tree's corners run counter-clockwise.
 float orientation(const Part& part, const Element& element) { return element.back ? -part.winding : part.winding; }
 
@@ -41,6 +44,7 @@ void ElementPool::fill_cluster(Element& element, ClusterRef ref) const {
   element.centre = vec3(part.to_world * vec4(node.centre, 1));
   element.radius = node.radius * part.scale;
   element.cone_cosine = node.cone_cosine;
+  element.flat = node.cone_cosine > kFlatCosine || (element.parent != kNoElement && elements_[element.parent].flat);
   fill_paint(element, node.first, node.count);
 }
 
@@ -56,6 +60,7 @@ void ElementPool::fill_triangle(Element& element, uint32_t triangle) const {
   element.radius = std::sqrt(std::max({dot(a - element.centre, a - element.centre), dot(b - element.centre, b - element.centre),
                                        dot(c - element.centre, c - element.centre)}));
   element.cone_cosine = 1;
+  element.flat = true;
   fill_paint(element, triangle, 1);
 }
 
@@ -104,6 +109,7 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
   for (const vec3& c : corners) squared = std::max(squared, dot(c - element.centre, c - element.centre));
   element.radius = std::sqrt(squared);
   element.cone_cosine = 1;
+  element.flat = true;
   fill_paint(element, patch.triangle, 1);
   if (part.triangle_reflectance.empty()) return;
   // Textured: the patch's own average, from points on it.

@@ -11,6 +11,8 @@ namespace {
 constexpr uint32_t kFewPoints = 12;
 // Keys that a larger leaf is given at least.
 constexpr uint32_t kLeastKeys = 6;
+// And how far its other points may be from one: squared distance over squared radius, plus that of the unit normals.
+constexpr float kFarthest = 0.5f;
 
 }  // namespace
 
@@ -95,8 +97,8 @@ void KeyPoints::spread_keys(const Leaf& leaf, std::vector<uint8_t>& is_key) cons
                                                  points_.points[p].normal));
   };
   for (uint32_t i = 0; i < leaf.count; ++i)
-    if (is_key[leaf_points_[leaf.first + i]] != 0 && keys < kLeastKeys) take(leaf_points_[leaf.first + i]);
-  while (keys < kLeastKeys) {
+    if (is_key[leaf_points_[leaf.first + i]] != 0) take(leaf_points_[leaf.first + i]);
+  while (keys < leaf.count) {
     uint32_t best = 0;
     if (keys == 0) {
       const vec3 n = points_.points[leaf_points_[leaf.first]].normal;
@@ -106,6 +108,7 @@ void KeyPoints::spread_keys(const Leaf& leaf, std::vector<uint8_t>& is_key) cons
           best = i;
     } else {
       best = static_cast<uint32_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+      if (keys >= kLeastKeys && nearest[best] < kFarthest) break;
     }
     const uint32_t p = leaf_points_[leaf.first + best];
     is_key[p] = 1;
@@ -119,6 +122,10 @@ vec3 KeyPoints::normal(uint32_t point) const {
 
 vec3 KeyPoints::modelled(const Leaf& leaf, uint32_t point) const {
   const RadiosityState& state = solver_.state();
+  const Element& element = solver_.pool()[leaf.id];
+  if (element.flat)
+    return glm::max(state.irradiance[leaf.id] + (points_.points[point].position - element.centre) * state.vector[leaf.id],
+                    vec3(0));
   return glm::max(normal(point) * state.vector[leaf.id], vec3(0)) + state.ambient[leaf.id];
 }
 

@@ -26,7 +26,7 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
       const vec3 n = back ? -points.points[p].normal : points.points[p].normal;
       // A flat leaf knows how its light varies with place, a curved one how it does with the normal.
       const vec3 turned =
-          is_planar(leaf.kind)
+          leaf.flat
               ? glm::max(solver.state().irradiance[leaves[f]] + (points.points[p].position - leaf.centre) * vector, vec3(0))
               : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
       sum[p] += turned;

@@ -56,9 +56,54 @@ vec3 cosine_direction(const vec3& n, float u, float v) {
   return radius * (std::cos(angle) * t + std::sin(angle) * cross(n, t)) + std::sqrt(std::max(0.0f, 1 - u)) * n;
 }
 
+// Triangles that lie on another with the same corners and the opposite front, as plates without thickness are modelled: a
+// ray may meet either first.
+std::vector<uint8_t> find_backed(const SurfaceSet& set) {
+  struct Place {
+    std::array<vec3, 3> corners;
+    bool turned = false;  // sorting took an odd permutation
+    uint32_t triangle = 0;
+  };
+  const auto less = [](const vec3& a, const vec3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+  };
+  const WorldTriangles world = world_triangles(set);
+  std::vector<Place> places(world.triangles.size());
+  for (const Part& part : set.parts) {
+    const size_t count = set.tree(part).mesh.triangles.size();
+    for (uint32_t t = part.first_triangle; t < part.first_triangle + count; ++t) {
+      Place& place = places[t];
+      place.triangle = t;
+      place.turned = part.winding < 0;
+      for (int k = 0; k < 3; ++k) place.corners[k] = world.positions[world.triangles[t][k]];
+      for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
+        if (less(place.corners[j], place.corners[i])) {
+          std::swap(place.corners[i], place.corners[j]);
+          place.turned = !place.turned;
+        }
+    }
+  }
+  const auto before = [&](const Place& a, const Place& b) {
+    for (int k = 0; k < 3; ++k)
+      if (a.corners[k] != b.corners[k]) return less(a.corners[k], b.corners[k]);
+    return a.triangle < b.triangle;
+  };
+  std::sort(places.begin(), places.end(), before);
+  std::vector<uint8_t> backed(places.size(), 0);
+  for (size_t i = 0, end = 0; i < places.size(); i = end) {
+    bool turned = false, straight = false;
+    for (end = i; end < places.size() && places[end].corners == places[i].corners; ++end)
+      (places[end].turned ? turned : straight) = true;
+    if (turned && straight)
+      for (size_t k = i; k < end; ++k) backed[places[k].triangle] = 1;
+  }
+  return backed;
+}
+
 struct Counter {
   const HierarchicalSolver& solver;
   uint32_t rays, seed;
+  std::vector<uint8_t> backed;
 
   const ElementPool& pool() const { return solver.pool(); }
 
@@ -68,7 +113,7 @@ struct Counter {
     const Part& part = part_of_triangle(set, hit.triangle);
     const Material& material = set.scene->materials[part.material];
     if (material.unlit) return false;
-    return material.double_sided || part.winding * dot(hit.normal, direction) < 0;
+    return material.double_sided || backed[hit.triangle] != 0 || part.winding * dot(hit.normal, direction) < 0;
   }
 
   // Averages body(leaf, point, index) over points drawn by the leaves' weights.
@@ -148,7 +193,7 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
   const ElementPool& pool = solver.pool();
   if (pool.root() == kNoElement) return balance;
   const RadiosityState& state = solver.state();
-  const Counter counter{solver, rays, seed};
+  const Counter counter{solver, rays, seed, find_backed(pool.surfaces())};
   const auto area = [](const Element& e) { return static_cast<double>(e.area); };
   double landing = 0, reflected = 0, own = 0;
   const Leaves by_power = collect(pool, [&](ElementId id, const Element& e) {

@@ -93,7 +93,7 @@ struct Sweep {
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
   float visit(ElementId id, const Octants& inherited) const {
     const Element& e = pool[id];
-    if (is_planar(e.kind)) return visit_planar(id, inherited, {});
+    if (e.flat) return visit_flat(id, inherited, {});
     Octants octants = inherited;
     vec3 direct(0);
     for (const Link& link : links.into(id)) {
@@ -117,7 +117,7 @@ struct Sweep {
     return left + right;
   }
 
-  float visit_planar(ElementId id, const Octants& above, Field field) const {
+  float visit_flat(ElementId id, const Octants& above, Field field) const {
     const Element& e = pool[id];
     float faced = above.faced, seen = above.seen;
     for (const Link& link : links.into(id)) {
@@ -136,7 +136,7 @@ struct Sweep {
     passed.seen = seen;
     float change = 0;
     for (uint32_t c = 0; c < 2; ++c)
-      change += visit_planar(e.first_child + c, passed, field.moved(pool[e.first_child + c].centre - e.centre));
+      change += visit_flat(e.first_child + c, passed, field.moved(pool[e.first_child + c].centre - e.centre));
     pull(id, e);
     return change;
   }

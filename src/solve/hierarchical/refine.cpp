@@ -60,8 +60,8 @@ struct Child {
 // How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may differ.
 void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& points, uint32_t& rays) {
   const Element &r = pool[child.receiver], &s = pool[child.source];
-  points = (!is_planar(r.kind) && r.cone_cosine < 0.9f) || is_light(s.kind) ? 8 : 4;
-  rays = is_light(s.kind) ? 1 : r.kind == ElementKind::kVolume ? 2 : 4;
+  points = r.kind <= ElementKind::kCluster || is_light(s.kind) ? 8 : 4;
+  rays = is_light(s.kind) ? 1 : r.kind <= ElementKind::kCluster ? 2 : 4;
 }
 
 // Whether two elements can see each other at all, by their cones of normals: spares a sampling.

@@ -9,7 +9,7 @@ namespace goldthread {
 namespace {
 
 // Largest error of a form factor that one piece of a source may bring in.
-constexpr float kTolerance = 4e-4f;
+constexpr float kTolerance = 6e-4f;
 
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre `distance_squared` away,
 // may be treated as a point: the error of that falls as the square of size over distance.
@@ -22,6 +22,30 @@ vec3 dipole(const vec3& to_source, float distance_squared, const vec3& summed_no
   const float power = -dot(to_source, summed_normal);
   if (power <= 0) return vec3(0);
   return to_source * (power / (kPi * distance_squared * distance_squared));
+}
+
+// The dipole of a flat piece with its second-order term. Moving over the piece's plane, K = (n.d)(s.d)/d^4 has mean
+//   K (1 + rho^2/d^2 (1 - 3 cos^2 + (n.s)(s.d)/(n.d)))
+// where rho^2 is twice the sum of the piece's two variances (rho is the radius, for a disc), s its unit normal turned to
+// the receiver and cos that of s and d: half the variance times the in-plane Laplacian of K. On the axis of a disc that is
+// the start of the exact rho^2/(rho^2 + d^2); without it near pieces bring too much.
+vec3 flat_dipole(const vec3& d, float squared, const vec3& summed_normal, const vec3& n, float rho_squared) {
+  const float at_receiver = dot(d, n), power = -dot(d, summed_normal);
+  if (at_receiver <= 0 || power <= 0) return vec3(0);
+  const float area = length(summed_normal);
+  const float at_source = power / area;
+  const float cosine_squared = at_source * at_source / squared;
+  const float bend = 1 - 3 * cosine_squared - dot(n, summed_normal) / area * at_source / at_receiver;
+  const float factor = std::clamp(1 + rho_squared / squared * bend, 0.5f, 1.5f);
+  return d * (factor * power / (kPi * squared * squared));
+}
+
+// Whether x is before the plane through `corner`, by more than rounding can make of a point on it: seen edge-on, a polygon
+// has no sides, and one that x lies on would seem to fill the sky.
+bool in_front(const vec3& x, const vec3& corner, const vec3& area_vector) {
+  const vec3 most = glm::max(glm::abs(x), glm::abs(corner));
+  const float rounding = 5e-7f * std::max(most.x, std::max(most.y, most.z));
+  return dot(x - corner, area_vector) > rounding * length(area_vector);
 }
 
 struct PlacedTree {
@@ -38,12 +62,14 @@ vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& 
   const vec3 normal = placed.winding * area_vector(a, b, c);
   const vec3 centre = (a + b + c) / 3.0f;
   const vec3 d = centre - x;
-  if (dot(a - x, normal) >= 0) return vec3(0);  // seen from behind: planar, so one corner tells
+  if (!in_front(x, a, normal)) return vec3(0);
   const float squared = dot(d, d);
   const float radius_squared = std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
   const float factor = -dot(d, normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
-  if (small_enough(factor, std::sqrt(radius_squared), squared))
-    return dot(d, n) > 0 ? dipole(d, squared, normal) : vec3(0);
+  if (small_enough(factor, std::sqrt(radius_squared), squared)) {
+    const vec3 ab = b - a, bc = c - b, ca = a - c;
+    return flat_dipole(d, squared, normal, n, (dot(ab, ab) + dot(bc, bc) + dot(ca, ca)) / 18);
+  }
   const std::array<vec3, 3> corners{a, placed.winding > 0 ? b : c, placed.winding > 0 ? c : b};
   return polygon_form_factor(x, n, corners);
 }
@@ -85,7 +111,11 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
                                    : factor < kTolerance && squared > 4 * radius * radius;
     const bool near_horizon = std::abs(dot(d, n)) < radius && factor > kTolerance;
     if ((small && !near_horizon) || depth + 2 > kStack) {
-      if (dot(d, n) > 0) sum += dipole(d, squared, summed);
+      if (node.cone_cosine > 0.995f) {
+        sum += flat_dipole(d, squared, summed, n, area / kPi);
+      } else if (dot(d, n) > 0) {
+        sum += dipole(d, squared, summed);
+      }
       continue;
     }
     stack[depth++] = node.child[1];
@@ -193,11 +223,11 @@ vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, co
     }
     case ElementKind::kPatch: {
       const vec3 d = e.centre - x;
-      if (dot(d, e.summed_normal) >= 0) return vec3(0);
+      if (!in_front(x, e.centre, e.summed_normal)) return vec3(0);
       const float squared = dot(d, d);
       const float factor = -dot(d, e.summed_normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
       if (std::abs(dot(d, n)) > e.radius && small_enough(factor, e.radius, squared))
-        return dot(d, n) > 0 ? dipole(d, squared, e.summed_normal) : vec3(0);
+        return flat_dipole(d, squared, e.summed_normal, n, e.area / kPi);
       return polygon_form_factor(x, n, pool.polygon(source).span());
     }
     case ElementKind::kSky: return sky_form_factor(n, pool.sky_corners(source));
@@ -305,13 +335,20 @@ PointSample sample_point(const ElementPool& pool, const Visibility& visibility, 
 }
 
 void finish(Link& link, float received, float unoccluded, uint32_t rays) {
-  link.visibility = static_cast<uint8_t>(std::lround(unoccluded > 0 ? 255 * received / unoccluded : 0));
+  link.visibility = static_cast<uint8_t>(std::lround(unoccluded > 0 ? 255 * received / unoccluded : 255));
   link.rays = static_cast<uint8_t>(std::min(rays, 255u));
 }
 
-// A flat receiver: mean and gradient from the quadrature's inner ring, doubt from what these leave and from the centre,
+// A gradient may take the light from nothing at one end to twice the mean at the other, and no further: fitted to samples
+// that happen to lie close together it could be anything.
+void limit_gradient(Link& link, float radius) {
+  const float rise = length(link.transfer) * radius;
+  if (rise > link.ambient) link.transfer *= link.ambient / std::max(rise, 1e-30f);
+}
+
+// A triangle or patch: mean and gradient from the quadrature's inner ring, doubt from what these leave and from the centre,
 // which alone tells a bend.
-void link_planar(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
+void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
                  RayCount& count) {
   std::array<SurfacePoint, 9> at;
   pool.quadrature(link.receiver, {at.data(), points});
@@ -332,6 +369,7 @@ void link_planar(const ElementPool& pool, const Visibility& visibility, Link& li
   const float g2 = (sample[2].received + sample[3].received - sample[0].received - sample[1].received) / 4;
   link.ambient = link.mean;
   link.transfer = a1 * (g1 / std::max(dot(a1, a1), 1e-30f)) + a2 * (g2 / std::max(dot(a2, a2), 1e-30f));
+  limit_gradient(link, pool[link.receiver].radius);
   for (uint32_t i = 0; i <= points; ++i) {
     const float said = link.mean + dot(at[i].position - pool[link.receiver].centre, link.transfer);
     link.spread = std::max(link.spread, std::abs(sample[i].received - said));
@@ -340,7 +378,44 @@ void link_planar(const ElementPool& pool, const Visibility& visibility, Link& li
   link.spread += 0.1f * (std::abs(g1) + std::abs(g2));
 }
 
-void link_curved(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
+// Mean and plane fitted by least squares over samples that lie where the triangles do.
+void fit_plane(Link& link, const Element& receiver, std::span<const SurfacePoint> at, std::span<const float> received) {
+  const auto count = static_cast<float>(at.size());
+  const vec3 n = normalize_or(receiver.summed_normal, vec3(0, 1, 0));
+  const vec3 u = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y)), v = cross(n, u);
+  vec2 middle(0);
+  for (const SurfacePoint& p : at) middle += vec2(dot(p.position - receiver.centre, u), dot(p.position - receiver.centre, v)) / count;
+  float xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
+  for (size_t i = 0; i < at.size(); ++i) {
+    const vec2 p = vec2(dot(at[i].position - receiver.centre, u), dot(at[i].position - receiver.centre, v)) - middle;
+    const float f = received[i] - link.mean;
+    xx += p.x * p.x;
+    xy += p.x * p.y;
+    yy += p.y * p.y;
+    xf += p.x * f;
+    yf += p.y * f;
+  }
+  const float determinant = xx * yy - xy * xy;
+  vec2 g(0);
+  if (determinant > 1e-4f * (xx + yy) * (xx + yy)) {
+    g = vec2(yy * xf - xy * yf, xx * yf - xy * xf) / determinant;
+  } else if (xx + yy > 0) {
+    // Samples along a line tell nothing across it.
+    const vec2 along = glm::normalize(xx >= yy ? vec2(xx, xy) : vec2(xy, yy));
+    g = along * ((along.x * xf + along.y * yf) / (xx + yy));
+  }
+  link.ambient = std::max(0.0f, link.mean - dot(g, middle));
+  link.transfer = g.x * u + g.y * v;
+  limit_gradient(link, receiver.radius);
+  for (size_t i = 0; i < at.size(); ++i) {
+    const float said = link.ambient + dot(at[i].position - receiver.centre, link.transfer);
+    link.spread = std::max(link.spread, std::abs(received[i] - said));
+  }
+  link.spread += 0.1f * std::sqrt((xx * g.x * g.x + 2 * xy * g.x * g.y + yy * g.y * g.y) / count);
+  link.mean = link.ambient;  // the centre is the centroid
+}
+
+void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
                  RayCount& count) {
   std::array<SurfacePoint, kStoredSamples> at;
   pool.quadrature(link.receiver, {at.data(), points});
@@ -361,7 +436,12 @@ void link_curved(const ElementPool& pool, const Visibility& visibility, Link& li
   // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
   if (facing > 0) link.transfer /= static_cast<float>(facing);
   finish(link, link.mean, link.unoccluded, rays);
-  if (pool[link.receiver].kind != ElementKind::kVolume) fit_model(link, {received.data(), points}, {normals.data(), points});
+  const Element& receiver = pool[link.receiver];
+  if (receiver.flat) {
+    fit_plane(link, receiver, {at.data(), points}, {received.data(), points});
+  } else if (receiver.kind != ElementKind::kVolume) {
+    fit_model(link, {received.data(), points}, {normals.data(), points});
+  }
 }
 
 }  // namespace
@@ -371,7 +451,8 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   Link link;
   link.receiver = receiver;
   link.source = source;
-  (is_planar(pool[receiver].kind) ? link_planar : link_curved)(pool, visibility, link, points, rays_per_point, ray_count);
+  const bool polygon = pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
+  (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
   return link;
 }
 

@@ -14,9 +14,6 @@ namespace goldthread {
 /// For lights the "radiosity" is what Element::exitance says: candela, lux, or the sky's lm/m^2.
 vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n);
 
-/// Whether an element is flat and whole: then its links hold gradients.
-inline bool is_planar(ElementKind kind) { return kind == ElementKind::kTriangle || kind == ElementKind::kPatch; }
-
 /// Share of a point or spot light's intensity that goes in unit direction `d` (KHR_lights_punctual's cone falloff).
 float light_distribution(const Light& light, const vec3& d);
 /// Share that is left at `distance` metres of a light with a range (KHR_lights_punctual), besides the inverse square.
@@ -49,8 +46,8 @@ struct Link {
   /// What a piece of the receiver with normal n gets per unit radiosity, visibility included: dot(n, transfer) + ambient.
   /// The vector (equation 4.19) is right for a source that all of the receiver sees in one direction; a source that
   /// surrounds it, as the rest of a hollow sphere does, brings the same to every normal. The mix is fitted to samples.
-  /// On a triangle or patch there is one normal, and the place takes its part: at p it gets ambient + dot(p - centre,
-  /// transfer), transfer being the gradient.
+  /// On a flat receiver there is one normal, and the place takes its part: p gets ambient + dot(p - centre, transfer),
+  /// transfer being the gradient.
   vec3 transfer{0};
   float ambient = 0;
   float mean = 0;          ///< mean over the receiver's real triangles: irradiance per unit radiosity
@@ -73,7 +70,7 @@ inline vec3 seen_radiosity(const ElementPool& pool, const Link& link, std::span<
   return link.front_share * shown[child] + (1 - link.front_share) * shown[child + 1];
 }
 
-/// Samples the transfer with `points` (4, 8 or 16; planar receivers: 4 or 8, and their centre) receiver points of
+/// Samples the transfer with `points` (4 or 8) receiver points of
 /// `rays_per_point` rays each.
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
                uint32_t points, uint32_t rays_per_point, RayCount& ray_count);

@@ -56,46 +56,51 @@ vec3 cosine_direction(const vec3& n, float u, float v) {
   return radius * (std::cos(angle) * t + std::sin(angle) * cross(n, t)) + std::sqrt(std::max(0.0f, 1 - u)) * n;
 }
 
-// Triangles that lie on another with the same corners and the opposite front, as plates without thickness are modelled: a
-// ray may meet either first.
+// Triangles in whose plane, within their reach, others of the same part face the opposite way: plates without thickness are
+// modelled so, and a ray may meet either first.
 std::vector<uint8_t> find_backed(const SurfaceSet& set) {
-  struct Place {
-    std::array<vec3, 3> corners;
-    bool turned = false;  // sorting took an odd permutation
+  struct Plane {
+    std::array<int32_t, 4> key;
+    bool turned = false;
+    Box box;
     uint32_t triangle = 0;
   };
-  const auto less = [](const vec3& a, const vec3& b) {
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-  };
-  const WorldTriangles world = world_triangles(set);
-  std::vector<Place> places(world.triangles.size());
+  std::vector<uint8_t> backed(set.triangles, 0);
   for (const Part& part : set.parts) {
-    const size_t count = set.tree(part).mesh.triangles.size();
-    for (uint32_t t = part.first_triangle; t < part.first_triangle + count; ++t) {
-      Place& place = places[t];
-      place.triangle = t;
-      place.turned = part.winding < 0;
-      for (int k = 0; k < 3; ++k) place.corners[k] = world.positions[world.triangles[t][k]];
-      for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
-        if (less(place.corners[j], place.corners[i])) {
-          std::swap(place.corners[i], place.corners[j]);
-          place.turned = !place.turned;
-        }
+    const TriangleMesh& mesh = set.tree(part).mesh;
+    Box bounds;
+    for (const vec3& p : part.positions)
+      if (is_finite(p)) bounds.add(p);
+    const float step = std::max(1e-5f * bounds.diagonal(), 1e-20f);
+    std::vector<Plane> planes(mesh.triangles.size());
+    for (uint32_t t = 0; t < planes.size(); ++t) {
+      Plane& plane = planes[t];
+      const UVec3& c = mesh.triangles[t];
+      const vec3 &p = part.positions[c.x], &q = part.positions[c.y], &r = part.positions[c.z];
+      vec3 n = normalize_or(area_vector(p, q, r), vec3(0, 1, 0));
+      plane.turned = n.x + 0.6f * n.y + 0.3f * n.z < 0;
+      if (plane.turned) n = -n;
+      plane.key = {static_cast<int32_t>(std::lround(n.x * 500)), static_cast<int32_t>(std::lround(n.y * 500)),
+                   static_cast<int32_t>(std::lround(n.z * 500)),
+                   static_cast<int32_t>(std::lround(dot(n, p - bounds.centre()) / (10 * step)))};
+      plane.triangle = part.first_triangle + t;
+      for (const vec3& corner : {p, q, r}) plane.box.add(corner);
     }
-  }
-  const auto before = [&](const Place& a, const Place& b) {
-    for (int k = 0; k < 3; ++k)
-      if (a.corners[k] != b.corners[k]) return less(a.corners[k], b.corners[k]);
-    return a.triangle < b.triangle;
-  };
-  std::sort(places.begin(), places.end(), before);
-  std::vector<uint8_t> backed(places.size(), 0);
-  for (size_t i = 0, end = 0; i < places.size(); i = end) {
-    bool turned = false, straight = false;
-    for (end = i; end < places.size() && places[end].corners == places[i].corners; ++end)
-      (places[end].turned ? turned : straight) = true;
-    if (turned && straight)
-      for (size_t k = i; k < end; ++k) backed[places[k].triangle] = 1;
+    std::sort(planes.begin(), planes.end(), [](const Plane& x, const Plane& y) {
+      return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
+    });
+    for (size_t i = 0, end = 0; i < planes.size(); i = end) {
+      Box straight, turned;
+      for (end = i; end < planes.size() && planes[end].key == planes[i].key; ++end)
+        (planes[end].turned ? turned : straight).add(planes[end].box);
+      if (straight.empty() || turned.empty()) continue;
+      for (size_t k = i; k < end; ++k) {
+        const Box &own = planes[k].box, &other = planes[k].turned ? straight : turned;
+        const bool apart = glm::any(glm::greaterThan(own.low, other.high + step)) ||
+                           glm::any(glm::greaterThan(other.low, own.high + step));
+        if (!apart) backed[planes[k].triangle] = 1;
+      }
+    }
   }
   return backed;
 }

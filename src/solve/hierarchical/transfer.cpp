@@ -48,6 +48,17 @@ bool in_front(const vec3& x, const vec3& corner, const vec3& area_vector) {
   return dot(x - corner, area_vector) > rounding * length(area_vector);
 }
 
+// A far piece that turns both faces and backs to x: a bolt, a chair's leg. Half of the sum of |n.d| and of -n.d over its
+// triangles is the projected area that faces x; the second is S's, the first is S's own besides what would be half the area,
+// were the normals that cancel in S spread evenly. Taking S alone, a closed object would send nothing.
+vec3 rounded_dipole(const vec3& d, float squared, const vec3& summed_normal, float area) {
+  const float distance = std::sqrt(squared);
+  const float net = -dot(d, summed_normal) / distance;
+  const float cancelled = std::max(0.0f, area - length(summed_normal));
+  const float facing = 0.5f * (std::abs(net) + 0.5f * cancelled + net);
+  return d * (facing / (kPi * squared * distance));
+}
+
 struct PlacedTree {
   const Part& part;
   const FaceClusterTree& tree;
@@ -113,8 +124,10 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     if ((small && !near_horizon) || depth + 2 > kStack) {
       if (node.cone_cosine > 0.995f) {
         sum += flat_dipole(d, squared, summed, n, area / kPi);
+      } else if (turned_here) {
+        if (dot(d, n) > 0) sum += dipole(d, squared, summed);
       } else if (dot(d, n) > 0) {
-        sum += dipole(d, squared, summed);
+        sum += rounded_dipole(d, squared, summed, area);
       }
       continue;
     }

@@ -91,7 +91,7 @@ TEST(BakeStops, MemoryLimitIsKeptAndTold) {
   const TempFolder folder;
   BakeOptions options = long_bake(folder);
   const uint64_t before = peak_memory();
-  options.max_memory = before + (uint64_t{250} << 20);
+  options.max_memory = before + (uint64_t{100} << 20);
   options.time_limit = 120;
   const BakeResult result = baked(options);
   EXPECT_THAT(result.warnings, Contains(HasSubstr("memory limit")));

@@ -20,6 +20,22 @@ constexpr double kNearError = 0.02;
 // The share of the scene's area below which a receiver's link to an uneven source counts no less.
 constexpr double kSourceShare = 0.03;
 
+// Share of what a curved receiver could get that counts as error, times how far its normals disagree.
+constexpr double kTurnError = 0.1;
+
+// How much of an element's area cancels in its summed normal: 0 for a plane, 1 for a closed object.
+double turned_share(const Element& e) {
+  return e.area > 0 ? std::max(0.0, 1 - static_cast<double>(length(e.summed_normal) / e.area)) : 0;
+}
+
+// A form factor that the samples may have missed: what a source of this size could have at this distance.
+double likely_factor(const Element& r, const Element& s, double sampled) {
+  if (s.kind > ElementKind::kPatch) return sampled;
+  const vec3 apart = s.centre - r.centre;
+  const double squared = static_cast<double>(dot(apart, apart)), area = static_cast<double>(s.area);
+  return std::max(sampled, 0.5 * area / (3.14159 * squared + area));
+}
+
 bool divisible(const Element& e) {
   return e.first_child != kNoElement || (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
 }
@@ -147,6 +163,8 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const vec3 apart = s.centre - r.centre;
   if (is_surface(s.kind) && dot(apart, apart) < reach * reach)
     error.receiver += kNearError * b * static_cast<double>(std::min(r.area, s.area));
+  // A receiver that turns many ways: few samples may all look away, and such links would be kept just because of that.
+  if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(r, s, unoccluded);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
   const double missed = unoccluded * (0.25 / (link.rays + 2.0));
@@ -219,7 +237,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
       Link& link = all[first + i];
       const bool box = pool[link.receiver].kind == ElementKind::kVolume || pool[link.source].kind == ElementKind::kVolume ||
                        link.receiver == link.source;
-      if (link.unoccluded <= 0 && !box) {
+      if (link.unoccluded <= 0 && !box && pool[link.receiver].flat) {
         link.alive = false;  // they do not face each other
       } else {
         next.push_back(first + i);

@@ -457,6 +457,44 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
   }
 }
 
+// Sets a link's mean from the source's end: A_r F_rs = A_s F_sr. Over a large receiver the light of a small source near it
+// is a peak between the samples, lost more often than caught; seen from the source the same transfer is smooth.
+void apply_reciprocity(const ElementPool& pool, const Visibility& visibility, Link& link, RayCount& count) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  std::array<SurfacePoint, 8> at;
+  const uint32_t points = s.flat ? 4 : 8;
+  pool.quadrature(link.source, {at.data(), points});
+  float received = 0, unoccluded = 0;
+  uint32_t rays = link.rays;
+  for (uint32_t i = 0; i < points; ++i) {
+    const PointSample sample =
+        sample_point(pool, visibility, link.receiver, at[i], s.flat ? 3 : 2, link.source * 16 + i, count);
+    received += sample.received;
+    unoccluded += sample.unoccluded;
+    rays += sample.rays;
+  }
+  const float scale = s.area / (r.area * static_cast<float>(points));
+  const float mean = received * scale;
+  link.spread += std::abs(mean - link.mean);
+  if (link.mean > 0.5f * mean) {
+    const float factor = mean / link.mean;
+    link.transfer *= factor;
+    link.ambient *= factor;
+  } else {  // what shape the samples have says nothing of where the peak is
+    link.transfer = vec3(0);
+    link.ambient = mean;
+  }
+  link.mean = mean;
+  link.unoccluded = unoccluded * scale;
+  finish(link, mean, link.unoccluded, rays);
+}
+
+bool reciprocity_helps(const Element& r, const Element& s) {
+  if (r.kind == ElementKind::kVolume || s.kind == ElementKind::kVolume || s.kind > ElementKind::kPatch) return false;
+  const vec3 apart = s.centre - r.centre;
+  return s.area < 0.5f * r.area && dot(apart, apart) < 6.25f * r.radius * r.radius;
+}
+
 }  // namespace
 
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
@@ -466,6 +504,8 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   link.source = source;
   const bool polygon = pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
   (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
+  if (receiver != source && reciprocity_helps(pool[receiver], pool[source]))
+    apply_reciprocity(pool, visibility, link, ray_count);
   return link;
 }
 

@@ -26,6 +26,9 @@ enum class ElementKind : uint8_t {
   kSun,       ///< a directional light
 };
 
+/// Whether it has area and may reflect.
+constexpr bool is_surface(ElementKind kind) { return kind <= ElementKind::kPatch; }
+
 /// One side of something that sends or receives light. World space.
 struct Element {
   ElementKind kind = ElementKind::kVolume;
@@ -82,9 +85,14 @@ class ElementPool {
   const SurfacePoint& stored_sample(ElementId id, uint32_t i) const { return samples_[elements_[id].samples + i]; }
   /// 4, 8 or 16 points of equal weight whose mean value is that of the element's surface: chosen from the stored samples of
   /// clusters; on triangles and patches exact for functions of second degree.
-  void quadrature(ElementId id, std::span<SurfacePoint> points) const;
+  /// `second` gives another set, independent of the first.
+  void quadrature(ElementId id, std::span<SurfacePoint> points, bool second = false) const;
   /// Any point: u selects by area, v moves within. For more samples than are stored.
   SurfacePoint sample_at(ElementId id, float u, float v) const;
+  /// A point on a face cluster, triangle or patch by what it sends to `x` rather than by area: large sources nearby are
+  /// sampled where they are near. `weight` is the sample's form-factor density over the density it was drawn with (its
+  /// mean over samples is the form factor times pi, occlusion apart); 0 where x is below or behind.
+  SurfacePoint sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v, float& weight) const;
   /// A direction within a sky element.
   vec3 sky_direction(ElementId id, float u, float v) const;
 
@@ -129,7 +137,7 @@ class ElementPool {
   SurfacePoint sample_cluster(const Element& element, ClusterRef ref, float u, float v) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
   SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
-  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points) const;
+  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points, bool second) const;
   Polygon triangle_polygon(const Element& element, uint32_t triangle) const;
   Polygon patch_polygon(const Element& element) const;
 

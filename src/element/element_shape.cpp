@@ -3,6 +3,7 @@
 
 #include "base/rng.h"
 #include "element/element_pool.h"
+#include "math/spherical_triangle.h"
 
 namespace goldthread {
 namespace {
@@ -177,19 +178,20 @@ void ElementPool::fill_samples(ElementId id) {
   }
 }
 
-void ElementPool::quadrature(ElementId id, std::span<SurfacePoint> points) const {
+void ElementPool::quadrature(ElementId id, std::span<SurfacePoint> points, bool second) const {
   const Element& element = elements_[id];
   if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster) {
     const size_t stride = kStoredSamples / points.size();
-    for (size_t i = 0; i < points.size(); ++i) points[i] = samples_[element.samples + i * stride];
+    for (size_t i = 0; i < points.size(); ++i) points[i] = samples_[element.samples + i * stride + (second ? stride / 2 : 0)];
     return;
   }
-  polygon_quadrature(polygon(id), normalize_or(element.summed_normal, vec3(0, 1, 0)), points);
+  polygon_quadrature(polygon(id), normalize_or(element.summed_normal, vec3(0, 1, 0)), points, second);
 }
 
 // Points whose mean and covariance are the polygon's own, so that any quadratic is integrated exactly. Form factors are
 // convex towards a shared edge: random points would be noisy, and the midpoint rule would lose light everywhere.
-void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points) const {
+void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
+                                     bool second) const {
   const vec3& a = polygon.corners[0];
   const vec3 u = normalize_or(polygon.corners[1] - a, vec3(1, 0, 0)), v = cross(normal, u);
   vec2 mean(0);
@@ -222,7 +224,7 @@ void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal,
   for (size_t i = 0; i < points.size(); ++i) {
     const float f = 0.995f, x = (i & 1) != 0 ? f : -f, y = (i & 2) != 0 ? f : -f;
     vec2 offset;
-    if ((i & 4) == 0) {
+    if (((i & 4) == 0) != second) {
       offset = x * s1 * e1 + y * s2 * e2;
     } else {
       offset = (i & 2) != 0 ? 1.41421356f * x * s1 * e1 : 1.41421356f * x * s2 * e2;
@@ -317,6 +319,61 @@ Polygon ElementPool::patch_polygon(const Element& element) const {
 Polygon ElementPool::polygon(ElementId id) const {
   const Element& element = elements_[id];
   return element.kind == ElementKind::kPatch ? patch_polygon(element) : triangle_polygon(element, element.shape);
+}
+
+SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
+                                         float& weight) const {
+  const Element& element = elements_[id];
+  Polygon polygon;
+  float chance = 1;
+  if (element.kind == ElementKind::kPatch) {
+    polygon = patch_polygon(element);
+  } else if (element.kind == ElementKind::kTriangle) {
+    polygon = triangle_polygon(element, element.shape);
+  } else {
+    const Part& part = set_->parts[element.part];
+    const FaceClusterTree& tree = set_->tree(part);
+    // By area over squared distance, as far as that can be told from centres.
+    const auto pull = [&](ClusterRef ref) {
+      if (is_triangle(ref)) {
+        const UVec3& c = tree.mesh.triangles[triangle_of(ref)];
+        const vec3 &p = part.positions[c.x], &q = part.positions[c.y], &r = part.positions[c.z];
+        const vec3 d = (p + q + r) / 3.0f - x;
+        return length(area_vector(p, q, r)) / (dot(d, d) + 0.25f * dot(q - p, q - p));
+      }
+      const FaceCluster& node = tree.nodes[ref];
+      const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - x;
+      const float scale = part.scale * part.scale;
+      return node.area * scale / (dot(d, d) + 0.25f * node.radius * node.radius * scale);
+    };
+    ClusterRef ref = element.shape;
+    while (!is_triangle(ref)) {
+      const FaceCluster& node = tree.nodes[ref];
+      const float a = pull(node.child[0]), b = pull(node.child[1]);
+      const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
+      const bool left = u < share;
+      ref = node.child[left ? 0 : 1];
+      const float of = left ? share : 1 - share;
+      u = std::min((left ? u : u - share) / std::max(of, 1e-20f), 0.99999994f);
+      chance *= of;
+    }
+    polygon = triangle_polygon(element, triangle_of(ref));
+  }
+  std::array<vec3, kMaxPolygon> from_x;
+  for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
+  const vec3 area = 0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
+  const vec3 normal = normalize_or(area, vec3(0, 1, 0));
+  weight = 0;
+  const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
+  const float towards = -dot(direction, normal), plane = -dot(from_x[0], normal), here = dot(direction, n);
+  if (towards <= 1e-6f || plane <= 0) return {polygon.corners[0], normal};
+  const SurfacePoint point{x + direction * (plane / towards), normal};
+  if (here <= 0) return point;
+  float angle = 0;
+  for (size_t i = 1; i + 1 < polygon.count; ++i)
+    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)), normalize_or(from_x[i + 1], vec3(0)));
+  weight = here * angle / chance;
+  return point;
 }
 
 void ElementPool::expand_sky(ElementId id) {

@@ -12,8 +12,6 @@ enum class Decision : uint8_t { kKeep, kReceiver, kSource, kBoth };
 
 bool is_light(ElementKind kind) { return kind == ElementKind::kPoint || kind == ElementKind::kSun; }
 
-bool is_surface(ElementKind kind) { return kind <= ElementKind::kPatch; }
-
 // Share of what could pass between two touching elements that counts as error.
 constexpr double kNearError = 0.02;
 
@@ -250,6 +248,23 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   }
   links.sort(pool.size());
   return counters;
+}
+
+void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links, const CancelToken& cancel,
+              RayCount& total_rays) {
+  std::vector<Link>& all = links.all();
+  std::atomic<uint64_t> rays{0}, nanoseconds{0};
+  parallel_for(
+      all.size(),
+      [&](size_t i) {
+        if (cancel.cancelled()) return;
+        RayCount cast;
+        resample_link(pool, visibility, all[i], cast);
+        rays.fetch_add(cast.rays, std::memory_order_relaxed);
+        nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);
+      },
+      64);
+  total_rays += {rays.load(), nanoseconds.load()};
 }
 
 double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links) {

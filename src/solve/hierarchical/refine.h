@@ -37,6 +37,10 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
                       const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
                       const std::function<void()>& between_waves);
 
+/// Measures all links anew (resample_link), once no more will be refined. Rays are added to `rays`.
+void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links, const CancelToken& cancel,
+              RayCount& rays);
+
 /// The sum of the estimated errors over all links, lm.
 double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links);
 

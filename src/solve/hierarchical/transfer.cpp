@@ -11,6 +11,9 @@ namespace {
 // Largest error of a form factor that one piece of a source may bring in.
 constexpr float kTolerance = 6e-4f;
 
+// Squared distance over squared radius below which a source is sampled by solid angle instead of by area.
+constexpr float kNearSource = 6;
+
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre `distance_squared` away,
 // may be treated as a point: the error of that falls as the square of size over distance.
 bool small_enough(float factor, float radius, float distance_squared) {
@@ -168,7 +171,9 @@ Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const
   ray.origin = from + epsilon * from_normal;
   ray.direction = to + epsilon * to_normal - ray.origin;
   ray.near = 0;
-  ray.far = 1;
+  // Ends short of the target by what its surface may stand out beside it; at closer quarters nothing fits between.
+  const float distance = length(ray.direction);
+  ray.far = distance > 4 * epsilon ? 1 - 2 * epsilon / distance : 0.0f;
   return ray;
 }
 
@@ -268,6 +273,8 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   std::array<Ray, 16> packet;
   std::array<float, 16> weight;
   float seen = 0, all = 0;
+  const vec3 way = e.centre - x;
+  const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume && dot(way, way) < kNearSource * e.radius * e.radius;
   const uint32_t turn = hash(seed, source);
   for (uint32_t first = 0; first < rays; first += 16) {
     size_t size = 0;
@@ -278,6 +285,11 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
         if (dot(direction, n) <= 0) continue;
         packet[size] = {origin, direction};
         weight[size++] = dot(direction, n);
+        continue;
+      }
+      if (near) {
+        const SurfacePoint y = pool.sample_towards(source, x, n, uv.u, uv.v, weight[size]);
+        if (weight[size] > 0) packet[size++] = ray_between(x, n, y.position, y.normal, epsilon);
         continue;
       }
       // Stored samples suffice for few rays, and spare the descent.
@@ -457,36 +469,43 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
   }
 }
 
-// Sets a link's mean from the source's end: A_r F_rs = A_s F_sr. Over a large receiver the light of a small source near it
-// is a peak between the samples, lost more often than caught; seen from the source the same transfer is smooth.
-void apply_reciprocity(const ElementPool& pool, const Visibility& visibility, Link& link, RayCount& count) {
-  const Element &r = pool[link.receiver], &s = pool[link.source];
-  std::array<SurfacePoint, 8> at;
-  const uint32_t points = s.flat ? 4 : 8;
-  pool.quadrature(link.source, {at.data(), points});
-  float received = 0, unoccluded = 0;
-  uint32_t rays = link.rays;
-  for (uint32_t i = 0; i < points; ++i) {
-    const PointSample sample =
-        sample_point(pool, visibility, link.receiver, at[i], s.flat ? 3 : 2, link.source * 16 + i, count);
-    received += sample.received;
-    unoccluded += sample.unoccluded;
-    rays += sample.rays;
-  }
-  const float scale = s.area / (r.area * static_cast<float>(points));
-  const float mean = received * scale;
-  link.spread += std::abs(mean - link.mean);
+// Gives a link another mean, keeping the shape of its light over the receiver if there was any to speak of.
+void set_mean(Link& link, float mean) {
   if (link.mean > 0.5f * mean) {
-    const float factor = mean / link.mean;
-    link.transfer *= factor;
-    link.ambient *= factor;
-  } else {  // what shape the samples have says nothing of where the peak is
+    link.transfer *= mean / link.mean;
+    link.ambient *= mean / link.mean;
+  } else {  // what shape the samples have says nothing of where the light is
     link.transfer = vec3(0);
     link.ambient = mean;
   }
   link.mean = mean;
-  link.unoccluded = unoccluded * scale;
-  finish(link, mean, link.unoccluded, rays);
+}
+
+// What an element gets of another at its own points: means over `points` of them.
+PointSample sample_element(const ElementPool& pool, const Visibility& visibility, ElementId at_element, ElementId towards,
+                           uint32_t points, uint32_t rays_per_point, bool second, RayCount& count) {
+  std::array<SurfacePoint, 8> at;
+  pool.quadrature(at_element, {at.data(), points}, second);
+  PointSample sum;
+  for (uint32_t i = 0; i < points; ++i) {
+    const PointSample sample = sample_point(pool, visibility, towards, at[i], rays_per_point,
+                                            at_element * 16 + i + (second ? 8 : 0), count);
+    sum.received += sample.received / static_cast<float>(points);
+    sum.unoccluded += sample.unoccluded / static_cast<float>(points);
+    sum.rays += sample.rays;
+  }
+  return sum;
+}
+
+// A link's mean from the source's end: A_r F_rs = A_s F_sr. Over a large receiver the light of a small source near it is a
+// peak between the samples, lost more often than caught; seen from the source the same transfer is smooth.
+PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibility, const Link& link, bool second,
+                              RayCount& count) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  PointSample sample = sample_element(pool, visibility, link.source, link.receiver, s.flat ? 4 : 8, s.flat ? 4 : 2, second, count);
+  sample.received *= s.area / r.area;
+  sample.unoccluded *= s.area / r.area;
+  return sample;
 }
 
 bool reciprocity_helps(const Element& r, const Element& s) {
@@ -505,8 +524,31 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   const bool polygon = pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
   (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
   if (receiver != source && reciprocity_helps(pool[receiver], pool[source]))
-    apply_reciprocity(pool, visibility, link, ray_count);
+  {
+    const PointSample sample = sample_reciprocal(pool, visibility, link, false, ray_count);
+    link.spread += std::abs(sample.received - link.mean);
+    set_mean(link, sample.received);
+    link.unoccluded = sample.unoccluded;
+    finish(link, sample.received, sample.unoccluded, link.rays + sample.rays);
+  }
   return link;
+}
+
+void resample_link(const ElementPool& pool, const Visibility& visibility, Link& link, RayCount& ray_count) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  if (link.receiver == link.source && r.kind == ElementKind::kVolume) return;
+  PointSample sample;
+  if (link.receiver != link.source && reciprocity_helps(r, s)) {
+    sample = sample_reciprocal(pool, visibility, link, true, ray_count);
+  } else {
+    const bool polygon = r.kind == ElementKind::kTriangle || r.kind == ElementKind::kPatch;
+    const uint32_t points = polygon ? 4 : 8;
+    sample = sample_element(pool, visibility, link.receiver, link.source, points, polygon ? 4 : 2, true, ray_count);
+  }
+  if (sample.unoccluded <= 0) return;
+  set_mean(link, sample.received);
+  link.unoccluded = sample.unoccluded;
+  finish(link, sample.received, sample.unoccluded, sample.rays);
 }
 
 }  // namespace goldthread

@@ -59,6 +59,10 @@ struct Link {
   bool alive = true;
 };
 
+/// Measures a kept link's mean and visibility anew, with other points and rays. A link is kept because its samples agree,
+/// and where little is seen through clutter they agree best when they miss it all: used as they are, they would lose light.
+void resample_link(const ElementPool& pool, const Visibility& visibility, Link& link, RayCount& ray_count);
+
 /// Measures `front_share` of a link whose source has children. Light is brighter where it comes nearer, so taking a source
 /// as evenly bright would lose light for every receiver; with the two halves weighed apart most of that is kept.
 void split_source(const ElementPool& pool, Link& link);

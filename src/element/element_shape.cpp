@@ -367,7 +367,10 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
   const float towards = -dot(direction, normal), plane = -dot(from_x[0], normal), here = dot(direction, n);
   if (towards <= 1e-6f || plane <= 0) return {polygon.corners[0], normal};
-  const SurfacePoint point{x + direction * (plane / towards), normal};
+  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past the polygon's end and into
+  // what stands there: it is drawn back by as much.
+  const float drawn_back = 1 - std::min(0.1f, 4e-7f / towards);
+  const SurfacePoint point{x + direction * (drawn_back * plane / towards), normal};
   if (here <= 0) return point;
   float angle = 0;
   for (size_t i = 1; i + 1 < polygon.count; ++i)

@@ -53,7 +53,7 @@ Effort effort_for(Quality quality) {
       effort.reconstruct.ray_share = 0.03f;
       break;
     case Quality::kMedium:
-      effort.solve.last_error = 1.5e-5;
+      effort.solve.last_error = 1e-5;
       effort.solve.least_area = 2.5e-5;
       break;
     case Quality::kHigh:

@@ -227,7 +227,9 @@ float light_range_factor(const Light& light, float distance) {
   return std::clamp(1 - r * r * r * r, 0.0f, 1.0f);
 }
 
-vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+namespace {
+
+vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
   const Element& e = pool[source];
   switch (e.kind) {
     case ElementKind::kVolume: return volume_transfer(pool, source, x, n);
@@ -256,6 +258,16 @@ vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, co
     }
   }
   return vec3(0);
+}
+
+}  // namespace
+
+vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+  const vec3 m = transfer_of_kind(pool, source, x, n);
+  const float factor = dot(m, n);
+  if (!(factor > 0)) return vec3(0);  // not a number, too: a sliver without a normal
+  // Nothing fills more than the whole hemisphere, whatever the rounding of what touches x.
+  return is_surface(pool[source].kind) && factor > 1 ? m / factor : m;
 }
 
 float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,

@@ -11,6 +11,10 @@ namespace {
 // Normals within two degrees of their mean are as good as one.
 constexpr float kFlatCosine = 0.9994f;
 
+// Steradians below which a polygon is sampled by area: it is about even there, and the angles of so small a spherical
+// triangle are lost in rounding.
+constexpr float kSmallSolidAngle = 0.05f;
+
 // +1 when the element's side is the one from which the tree's corners run counter-clockwise.
 float orientation(const Part& part, const Element& element) { return element.back ? -part.winding : part.winding; }
 
@@ -364,19 +368,28 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   const vec3 area = 0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
   const vec3 normal = normalize_or(area, vec3(0, 1, 0));
   weight = 0;
+  float angle = 0, whole = 0;
+  for (size_t i = 1; i + 1 < polygon.count; ++i) {
+    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)), normalize_or(from_x[i + 1], vec3(0)));
+    whole += 0.5f * length(cross(polygon.corners[i] - polygon.corners[0], polygon.corners[i + 1] - polygon.corners[0]));
+  }
+  const float plane = -dot(from_x[0], normal);
+  if (plane <= 0) return {polygon.corners[0], normal};
+  if (angle < kSmallSolidAngle) {
+    const SurfacePoint point = sample_polygon(polygon, normal, u, v);
+    const vec3 d = point.position - x;
+    const float squared = dot(d, d);
+    weight = std::max(0.0f, dot(d, n)) * plane * whole / (squared * squared * chance + 1e-30f);
+    return point;
+  }
   const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
-  const float towards = -dot(direction, normal), plane = -dot(from_x[0], normal), here = dot(direction, n);
-  if (towards <= 1e-6f || plane <= 0) return {polygon.corners[0], normal};
+  const float towards = -dot(direction, normal), here = dot(direction, n);
+  if (towards <= 1e-5f) return {polygon.corners[0], normal};
   // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past the polygon's end and into
   // what stands there: it is drawn back by as much.
-  const float drawn_back = 1 - std::min(0.1f, 4e-7f / towards);
-  const SurfacePoint point{x + direction * (drawn_back * plane / towards), normal};
-  if (here <= 0) return point;
-  float angle = 0;
-  for (size_t i = 1; i + 1 < polygon.count; ++i)
-    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)), normalize_or(from_x[i + 1], vec3(0)));
-  weight = here * angle / chance;
-  return point;
+  const float drawn_back = 1 - std::min(0.1f, 2e-6f / towards);
+  weight = std::max(0.0f, here) * angle / chance;
+  return {x + direction * (drawn_back * plane / towards), normal};
 }
 
 void ElementPool::expand_sky(ElementId id) {

@@ -16,13 +16,14 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
 
 }  // namespace
 
-vec3 gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
+Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
                const GatherOptions& options, uint32_t seed, RayCount& rays) {
   const ElementPool& pool = solver.pool();
   const RadiosityState& state = solver.state();
   // What the leaf has in all, against which single links are weighed; its own value may be nought in a shadow.
   const float whole = largest(state.irradiance[leaf]) + 1e-20f;
   vec3 sum(0);
+  float faced = 0, seen = 0;
   for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
     for (const Link& link : solver.links().into(id)) {
       const vec3 b = seen_radiosity(pool, link, state.shown);
@@ -36,9 +37,12 @@ vec3 gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, 
       float visible = static_cast<float>(link.visibility) / 255.0f;
       if (count > 0) visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays);
       sum += visible * factor * b;
+      if (kind == ElementKind::kPoint || kind == ElementKind::kSun) continue;
+      faced += factor;
+      seen += visible * factor;
     }
   }
-  return sum;
+  return {sum, faced > 0 ? seen / faced : 1.0f};
 }
 
 }  // namespace goldthread

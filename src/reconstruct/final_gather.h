@@ -9,10 +9,15 @@ struct GatherOptions {
   float ray_share = 0.01f;
 };
 
-/// Irradiance (lux) at `x` with unit normal `n`, which belongs to leaf element `leaf`: the links into it and all elements
+struct Gathered {
+  vec3 irradiance{0};  ///< lux
+  float openness = 1;  ///< of what lies before the point, the share that it sees
+};
+
+/// Irradiance at `x` with unit normal `n`, which belongs to leaf element `leaf`: the links into it and all elements
 /// above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew). Rays are cast for links
 /// that bring a share of the light worth them; for the rest the links' own sampled visibility serves.
-vec3 gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
+Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
                const GatherOptions& options, uint32_t seed, RayCount& rays);
 
 }  // namespace goldthread

@@ -9,6 +9,9 @@ namespace {
 
 // Leaves with no more points than this are gathered at all of them.
 constexpr uint32_t kFewPoints = 12;
+// A leaf that bends round a crease is no smooth piece to interpolate over; only where there are very many points must it do.
+constexpr float kCreaseCosine = 0.5f;
+constexpr uint32_t kFewOnCreases = 512;
 // Keys that a larger leaf is given at least.
 constexpr uint32_t kLeastKeys = 6;
 // And how far its other points may be from one: squared distance over squared radius, plus that of the unit normals.
@@ -60,7 +63,9 @@ void KeyPoints::group_points(const std::vector<ElementId>& leaves) {
 void KeyPoints::choose_keys() {
   is_key_.assign(points_.points.size(), 0);
   const auto large = [&](uint32_t leaf) {
-    return leaves_[leaf].count > kFewPoints && solver_.pool()[leaves_[leaf].id].kind == ElementKind::kCluster;
+    const Element& element = solver_.pool()[leaves_[leaf].id];
+    const uint32_t few = element.cone_cosine < kCreaseCosine ? kFewOnCreases : kFewPoints;
+    return leaves_[leaf].count > few && element.kind == ElementKind::kCluster;
   };
   for (uint32_t p = 0; p < is_key_.size(); ++p) {
     const uint32_t first = point_first_[p], end = point_first_[p + 1];
@@ -122,10 +127,8 @@ vec3 KeyPoints::normal(uint32_t point) const {
 
 vec3 KeyPoints::modelled(const Leaf& leaf, uint32_t point) const {
   const RadiosityState& state = solver_.state();
-  const Element& element = solver_.pool()[leaf.id];
-  if (element.flat)
-    return glm::max(state.irradiance[leaf.id] + (points_.points[point].position - element.centre) * state.vector[leaf.id],
-                    vec3(0));
+  // On a flat leaf the keys alone tell how light varies: its gradient comes of fewer samples than they are.
+  if (solver_.pool()[leaf.id].flat) return state.irradiance[leaf.id];
   return glm::max(normal(point) * state.vector[leaf.id], vec3(0)) + state.ambient[leaf.id];
 }
 
@@ -136,9 +139,10 @@ vec3 KeyPoints::within(const Leaf& leaf, uint32_t point, const std::vector<vec3>
   for (uint32_t k = leaf.first_key; k < leaf.first_key + leaf.key_count; ++k) {
     const uint32_t key = leaf_keys_[k];
     const vec3 d = (points_.points[key].position - points_.points[point].position) / radius;
-    const float agreement = std::max(0.0f, dot(points_.points[key].normal, points_.points[point].normal));
-    const float closeness = 1 / (dot(d, d) + 1e-4f);
-    const float weight = closeness * closeness * (0.02f + agreement * agreement);
+    // Two points of a crease share their place; what keeps them apart is that they face different ways.
+    const vec3 turn = points_.points[key].normal - points_.points[point].normal;
+    const float closeness = 1 / (dot(d, d) + 2 * dot(turn, turn) + 1e-4f);
+    const float weight = closeness * closeness;
     sum += weight * (light[key] - modelled(leaf, key));
     total += weight;
   }

@@ -47,6 +47,36 @@ vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) 
   return point.position + way * (distance > 0 ? step / distance : 0.0f);
 }
 
+// A point that sees less than this share of what lies before it is inside or behind something.
+constexpr float kBuried = 0.08f;
+
+// Gives points that lie buried (a ceiling's behind the lamp that hangs on it) the light of their open neighbours. Nobody
+// sees the points themselves, but the faces that reach out from under cover would darken towards them.
+void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vector<vec3>& light) {
+  for (int ring = 0; ring < 2; ++ring) {
+    std::vector<vec3> sum(light.size(), vec3(0));
+    std::vector<float> weight(light.size(), 0);
+    for (uint32_t f = 0; f + 1 < points.corner_first.size(); ++f) {
+      for (uint32_t a = points.corner_first[f]; a < points.corner_first[f + 1]; ++a) {
+        const uint32_t p = points.corners[a];
+        if (buried[p] == 0) continue;
+        for (uint32_t b = points.corner_first[f]; b < points.corner_first[f + 1]; ++b) {
+          const uint32_t q = points.corners[b];
+          if (buried[q] != 0) continue;
+          const float w = 1 / (length(points.points[p].position - points.points[q].position) + 1e-20f);
+          sum[p] += w * light[q];
+          weight[p] += w;
+        }
+      }
+    }
+    for (size_t p = 0; p < light.size(); ++p) {
+      if (weight[p] <= 0) continue;
+      light[p] = sum[p] / weight[p];
+      buried[p] = 0;
+    }
+  }
+}
+
 std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints& points,
                               const std::vector<ElementId>& leaves, bool back, const ReconstructOptions& options,
                               const CancelToken& cancel, ReconstructStats& stats) {
@@ -54,6 +84,7 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
   const GatherOptions gather{options.light_rays, options.ray_share};
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   const KeyPoints keys(solver, points, leaves, back);
+  std::vector<uint8_t> buried(points.points.size(), 0);
   parallel_for(
       keys.keys().size(),
       [&](size_t k) {
@@ -64,8 +95,10 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
         if (leaf == kNoElement) return;
         const vec3 n = back ? -point.normal : point.normal;
         RayCount count;
-        light[i] = gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
+        const Gathered gathered = gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
                              hash(i, 77), count);
+        light[i] = gathered.irradiance;
+        buried[i] = gathered.openness < kBuried ? 1 : 0;
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
       },
@@ -73,6 +106,7 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
   stats.rays += {rays.load(), nanoseconds.load()};
   stats.points += keys.keys().size();
   if (!cancel.cancelled()) keys.interpolate(light);
+  fill_buried(points, std::move(buried), light);
   return light;
 }
 

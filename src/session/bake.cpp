@@ -54,7 +54,7 @@ Effort effort_for(Quality quality) {
       break;
     case Quality::kMedium:
       effort.solve.last_error = 1e-5;
-      effort.solve.least_area = 2.5e-5;
+      effort.solve.least_area = 1.2e-5;
       break;
     case Quality::kHigh:
       effort.solve.last_error = 3e-6;

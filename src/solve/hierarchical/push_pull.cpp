@@ -88,6 +88,7 @@ struct Sweep {
   const ElementPool& pool;
   const LinkPool& links;
   RadiosityState& state;
+  float most_seen;  // what the form factors of a leaf may add up to
   const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
@@ -97,8 +98,10 @@ struct Sweep {
     Octants octants = inherited;
     vec3 direct(0);
     for (const Link& link : links.into(id)) {
-      octants.faced += link.unoccluded;
-      octants.seen += link.mean;
+      if (is_form_factor(link)) {
+        octants.faced += link.unoccluded;
+        octants.seen += link.mean;
+      }
       if (link.mean <= 0) continue;
       const vec3 b = seen_radiosity(pool, link, old);
       octants.add(link.transfer, link.ambient, b);
@@ -121,8 +124,10 @@ struct Sweep {
     const Element& e = pool[id];
     float faced = above.faced, seen = above.seen;
     for (const Link& link : links.into(id)) {
-      faced += link.unoccluded;
-      seen += link.mean;
+      if (is_form_factor(link)) {
+        faced += link.unoccluded;
+        seen += link.mean;
+      }
       if (link.mean > 0) field.add(link, seen_radiosity(pool, link, old));
     }
     if (e.first_child == kNoElement) {
@@ -154,7 +159,15 @@ struct Sweep {
     return settle(id, e, irradiance, all.faced, all.seen);
   }
 
-  float settle(ElementId id, const Element& e, const vec3& irradiance, float faced, float seen) const {
+  // A lamp's transfer is no share of a hemisphere.
+  bool is_form_factor(const Link& link) const {
+    const ElementKind kind = pool[link.source].kind;
+    return kind != ElementKind::kPoint && kind != ElementKind::kSun;
+  }
+
+  float settle(ElementId id, const Element& e, const vec3& gathered, float faced, float seen) const {
+    // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let light grow.
+    const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(seen, 1e-20f));
     const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;
@@ -190,10 +203,10 @@ glm::dvec3 landing(const ElementPool& pool, const RadiosityState& state, Element
 
 }  // namespace
 
-double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state) {
+double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state, float most_seen) {
   if (pool.root() == kNoElement) return 0;
   const std::vector<vec3> old = state.shown;
-  const Sweep sweep{pool, links, state, old};
+  const Sweep sweep{pool, links, state, most_seen, old};
   const float change = sweep.visit(pool.root(), Octants{});
   const vec3 all = landing_power(pool, state);
   return static_cast<double>(change) / std::max(1e-30, static_cast<double>(largest(all)));

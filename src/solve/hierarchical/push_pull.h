@@ -9,7 +9,8 @@ namespace goldthread {
 /// pulls averages up (4.17). Vectors are kept apart by octant of direction on the way down, so that two lamps on opposite
 /// sides of a cluster do not cancel. Returns the sum of the leaves' changes of reflected power as a share
 /// of all power landing.
-double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state);
+/// Leaves whose sampled form factors add up to more than `most_seen` are scaled down to that.
+double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state, float most_seen = 1.25f);
 
 /// Irradiance times area (with coverage) over the leaves, lm.
 vec3 landing_power(const ElementPool& pool, const RadiosityState& state);

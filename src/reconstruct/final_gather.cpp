@@ -29,6 +29,15 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       const vec3 b = seen_radiosity(pool, link, state.shown);
       const float most = largest(b);
       if (most <= 0) continue;
+      if ((link.mean + link.spread) * most < 0.5f * options.ray_share * whole) {
+        const Element& r = pool[id];
+        const float modelled = r.flat ? link.ambient + dot(x - r.centre, link.transfer)
+                                      : std::max(0.0f, dot(n, link.transfer)) + link.ambient;
+        sum += std::max(0.0f, modelled) * b;
+        faced += link.unoccluded;
+        seen += link.mean;
+        continue;
+      }
       const vec3 m = point_transfer(pool, link.source, x, n);
       const float factor = dot(m, n);
       if (factor <= 0) continue;
@@ -42,7 +51,7 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       seen += visible * factor;
     }
   }
-  return {sum, faced > 0 ? seen / faced : 1.0f};
+  return {sum, faced > 0 ? seen / faced : 1.0f, seen};
 }
 
 }  // namespace goldthread

@@ -11,7 +11,7 @@ namespace {
 constexpr uint32_t kFewPoints = 12;
 // A leaf that bends round a crease is no smooth piece to interpolate over; only where there are very many points must it do.
 constexpr float kCreaseCosine = 0.5f;
-constexpr uint32_t kFewOnCreases = 512;
+constexpr uint32_t kFewOnCreases = 64;
 // Keys that a larger leaf is given at least.
 constexpr uint32_t kLeastKeys = 6;
 // And how far its other points may be from one: squared distance over squared radius, plus that of the unit normals.

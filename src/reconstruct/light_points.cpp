@@ -107,6 +107,7 @@ PartPoints collect_light_points(const ElementPool& pool, uint32_t part, float no
       sum += area_vector(view.position(loop[0]), view.position(loop[i]), view.position(loop[i + 1]));
     for (const uint32_t v : loop) centre += view.position(v) / static_cast<float>(loop.size());
     out.face_centres.push_back(centre);
+    out.face_normals.push_back(flat);
     const float area = length(sum);
     for (const uint32_t v : loop) {
       const vec3 n = normals.at(t, flat, view.weights(t, v));

@@ -22,6 +22,7 @@ struct PartPoints {
   std::vector<uint32_t> corner_first;   ///< per leaf face, first of its corners in `corners`; one more at the end
   std::vector<uint32_t> corners;        ///< light point of each face corner, in the face's loop order
   std::vector<vec3> face_centres;       ///< per leaf face
+  std::vector<vec3> face_normals;       ///< per leaf face, unit, on the front, of the geometry itself
 };
 
 /// `normal_agreement`: cosine above which corners at one vertex share their light.

@@ -47,6 +47,12 @@ vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) 
   return point.position + way * (distance > 0 ? step / distance : 0.0f);
 }
 
+// A vertex normal that leans from its face looks partly below it, where nothing comes from: (1 - cos) / 2 of its hemisphere.
+// What it would get of an even surrounding is restored, as far as it does see less than all there is.
+float horizon_gain(float cosine, float seen) {
+  return std::clamp(1 / std::max(seen, 1e-3f), 1.0f, 2 / (1 + std::clamp(cosine, 0.0f, 1.0f)));
+}
+
 // A point that sees less than this share of what lies before it is inside or behind something.
 constexpr float kBuried = 0.08f;
 
@@ -97,7 +103,7 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
         RayCount count;
         const Gathered gathered = gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
                              hash(i, 77), count);
-        light[i] = gathered.irradiance;
+        light[i] = gathered.irradiance * horizon_gain(dot(point.normal, points.face_normals[point.face]), gathered.seen);
         buried[i] = gathered.openness < kBuried ? 1 : 0;
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);

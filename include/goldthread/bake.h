@@ -16,34 +16,36 @@ enum class Quality { kDraft, kMedium, kHigh, kFinal };
 /// How an output scene carries the light.
 enum class OutputMode {
   kUnlit,        ///< COLOR_0 = linear outgoing light, KHR_materials_unlit
-  kVertexLight,  ///< float attribute _IRRADIANCE (lux) beside untouched materials; _IRRADIANCE_BACK on two-sided ones
+  kVertexLight,  ///< float attribute _IRRADIANCE (lux) beside untouched materials; _IRRADIANCE_BACK on
+                 ///< two-sided ones
 };
 
 struct BakeOptions {
-  std::string input;                     ///< .gltf .glb .obj .ply .stl .fbx .dae
-  std::vector<std::string> outputs;      ///< by extension: .glb .gltf (scene), .gold (solution), .png .exr (preview)
+  std::string input;  ///< .gltf .glb .obj .ply .stl .fbx .dae
+  std::vector<std::string>
+      outputs;  ///< by extension: .glb .gltf (scene), .gold (solution), .png .exr (preview)
   OutputMode mode = OutputMode::kVertexLight;
   Quality quality = Quality::kMedium;
-  std::optional<double> time_limit;      ///< seconds for the whole run
-  std::optional<uint64_t> max_memory;    ///< bytes of resident memory
-  int threads = 0;                       ///< 0: all
+  std::optional<double> time_limit;    ///< seconds for the whole run
+  std::optional<uint64_t> max_memory;  ///< bytes of resident memory
+  int threads = 0;                     ///< 0: all
   uint64_t seed = 0;
   std::optional<std::array<float, 3>> sky;  ///< uniform sky luminance, nits, linear RGB
   struct Sun {
-    float illuminance = 100000;          ///< lux on a plane facing it
-    float elevation = 45, azimuth = 135; ///< degrees; azimuth 0 is -Z, 90 is +X
+    float illuminance = 100000;           ///< lux on a plane facing it
+    float elevation = 45, azimuth = 135;  ///< degrees; azimuth 0 is -Z, 90 is +X
   };
   std::optional<Sun> sun;
-  bool fix_normals = false;              ///< turn shells that are wound inside out
+  bool fix_normals = false;                     ///< turn shells that are wound inside out
   int picture_width = 960, picture_height = 0;  ///< preview size; height 0 follows the camera's aspect
-  std::string report_file;               ///< JSON report, empty for none
-  double exposure = 0;                   ///< unlit and preview: multiplies light before tone mapping; 0 chooses
+  std::string report_file;                      ///< JSON report, empty for none
+  double exposure = 0;  ///< unlit and preview: multiplies light before tone mapping; 0 chooses
 };
 
 /// Where a bake is. Sent at least once a second while it runs.
 struct BakeEvent {
-  std::string stage;             ///< "load", "preprocess", "solve", "reconstruct", "write"
-  double share = 0;              ///< of the whole run done, 0..1, an estimate
+  std::string stage;  ///< "load", "preprocess", "solve", "reconstruct", "write"
+  double share = 0;   ///< of the whole run done, 0..1, an estimate
   double rays_per_second = 0;
   double error_estimate = 0;     ///< relative, as in the report
   double seconds = 0;            ///< since the start
@@ -53,10 +55,11 @@ struct BakeEvent {
 /// The two hooks a caller has into a running bake. Both are called from the thread that called `bake`.
 struct BakeListener {
   std::function<void(const BakeEvent&)> on_progress;  ///< may be empty
-  std::function<bool()> cancelled;                    ///< polled often; true stops the solve and writes what there is
+  std::function<bool()> cancelled;  ///< polled often; true stops the solve and writes what there is
 };
 
-/// What the report says (design.md section 9). `json` is the whole object, `line()` one sentence for a person.
+/// What the report says (design.md section 9). `json` is the whole object, `line()` one sentence for a
+/// person.
 struct BakeResult {
   std::string json;
   std::string summary;
@@ -65,8 +68,8 @@ struct BakeResult {
   bool cancelled = false;
 };
 
-/// Reads, solves, reconstructs, writes. Outputs are written under a temporary name and renamed. On cancellation the best
-/// solution so far is written and `cancelled` is set.
+/// Reads, solves, reconstructs, writes. Outputs are written under a temporary name and renamed. On
+/// cancellation the best solution so far is written and `cancelled` is set.
 Result<BakeResult> bake(const BakeOptions& options, const BakeListener& listener = {});
 
 /// What is in a scene file and what is wrong with it, as lines for a person and as JSON.
@@ -77,9 +80,9 @@ struct SceneInfo {
 Result<SceneInfo> inspect(const std::string& file);
 
 struct MakeOptions {
-  std::string name;         ///< cornell-box, furnace, sphere, office, car, two-rooms
-  uint64_t triangles = 0;   ///< wanted count, 0 for the scene's own
-  std::string output;       ///< .glb or .gltf
+  std::string name;        ///< cornell-box, furnace, sphere, office, car, two-rooms
+  uint64_t triangles = 0;  ///< wanted count, 0 for the scene's own
+  std::string output;      ///< .glb or .gltf
 };
 /// Writes a procedural scene; returns the number of triangles made.
 Result<uint64_t> make_scene(const MakeOptions& options);

@@ -13,12 +13,12 @@ template <typename A, typename B>
 }
 }  // namespace goldthread::detail
 
-#define GOLDTHREAD_CHECK_OP(op, a, b)                                                                   \
-  do {                                                                                                  \
-    const auto& check_a = (a);                                                                          \
-    const auto& check_b = (b);                                                                          \
-    if (!(check_a op check_b))                                                                          \
-      ::goldthread::detail::check_failed(#a " " #op " " #b, check_a, check_b, __FILE__, __LINE__);      \
+#define GOLDTHREAD_CHECK_OP(op, a, b)                                                              \
+  do {                                                                                             \
+    const auto& check_a = (a);                                                                     \
+    const auto& check_b = (b);                                                                     \
+    if (!(check_a op check_b))                                                                     \
+      ::goldthread::detail::check_failed(#a " " #op " " #b, check_a, check_b, __FILE__, __LINE__); \
   } while (false)
 #define GOLDTHREAD_CHECK_EQ(a, b) GOLDTHREAD_CHECK_OP(==, a, b)
 #define GOLDTHREAD_CHECK_LT(a, b) GOLDTHREAD_CHECK_OP(<, a, b)

@@ -20,15 +20,18 @@ inline uint32_t hash(uint32_t a, uint32_t b = 0) {
 }
 
 /// A hash as a number in [0, 1).
-inline float unit_float(uint32_t h) { return static_cast<float>(h >> 8) * (1.0f / 16777216.0f); }
+inline float unit_float(uint32_t h) {
+  return static_cast<float>(h >> 8) * (1.0f / 16777216.0f);
+}
 
-/// Point i of Roberts' R2 sequence, shifted by a Cranley-Patterson rotation derived from `seed`. Fixed-point, so that
-/// no precision is lost however large i is.
+/// Point i of Roberts' R2 sequence, shifted by a Cranley-Patterson rotation derived from `seed`. Fixed-point,
+/// so that no precision is lost however large i is.
 struct UnitSquarePoint {
   float u, v;
 };
 inline UnitSquarePoint r2_point(uint32_t i, uint32_t seed) {
-  return {unit_float((i + 1) * 0xc13fa9a9u + hash(seed, 1)), unit_float((i + 1) * 0x91e10da5u + hash(seed, 2))};
+  return {unit_float((i + 1) * 0xc13fa9a9u + hash(seed, 1)),
+          unit_float((i + 1) * 0x91e10da5u + hash(seed, 2))};
 }
 
 }  // namespace goldthread

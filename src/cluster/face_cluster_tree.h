@@ -39,7 +39,8 @@ struct FaceClusterTree {
 };
 
 struct FaceClusterOptions {
-  /// k of equation 4.8: larger trades planarity for balance. Has no unit: see merge_cost(). Taken as 1e-6 at least.
+  /// k of equation 4.8: larger trades planarity for balance. Has no unit: see merge_cost(). Taken as 1e-6 at
+  /// least.
   float balance = 0.001f;
   /// Components above this are first clustered in regions of at most this size, in parallel.
   uint32_t region_triangles = 4096;

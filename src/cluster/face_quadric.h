@@ -50,10 +50,11 @@ inline FaceQuadric merged(const FaceQuadric& a, const FaceQuadric& b) {
   return q;
 }
 
-/// E_fit of the best plane (equation 4.1): the smallest eigenvalue of Z over the number of points. It is the lowest
-/// root of the characteristic polynomial, all of whose roots are real and not negative; Laguerre's iteration climbs to
-/// it from 0 without overshooting, its error cubed in every step. For flat clusters one step is enough; three leave a
-/// few thousandths where all eigenvalues are nearly equal, and far less otherwise.
+/// E_fit of the best plane (equation 4.1): the smallest eigenvalue of Z over the number of points. It is the
+/// lowest root of the characteristic polynomial, all of whose roots are real and not negative; Laguerre's
+/// iteration climbs to it from 0 without overshooting, its error cubed in every step. For flat clusters one
+/// step is enough; three leave a few thousandths where all eigenvalues are nearly equal, and far less
+/// otherwise.
 inline float fit_error(const FaceQuadric& q) {
   const double trace = double(q.xx) + double(q.yy) + double(q.zz);
   if (!(trace > 0)) return 0;

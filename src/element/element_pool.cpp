@@ -95,7 +95,8 @@ void ElementPool::make_lights() {
   if (scene.sky.present()) {
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     for (int octant = 0; octant < 8; ++octant) {
-      const vec3 a = (octant & 1) != 0 ? -x : x, b = (octant & 2) != 0 ? -y : y, c = (octant & 4) != 0 ? -z : z;
+      const vec3 a = (octant & 1) != 0 ? -x : x, b = (octant & 2) != 0 ? -y : y,
+                 c = (octant & 4) != 0 ? -z : z;
       std::array<vec3, 3> corners{a, b, c};
       if (dot(cross(a, b), c) > 0) std::swap(corners[1], corners[2]);  // counter-clockwise from inside
       Element sky;
@@ -124,12 +125,16 @@ bool ElementPool::prepare_children(ElementId id) {
   const Element& element = elements_[id];
   switch (element.kind) {
     case ElementKind::kCluster:
-    case ElementKind::kSky: return element.depth < 250;
-    case ElementKind::kTriangle: return split_patch(patch_of_triangle(element.part, element.shape));
-    case ElementKind::kPatch: return split_patch(element.shape);
+    case ElementKind::kSky:
+      return element.depth < 250;
+    case ElementKind::kTriangle:
+      return split_patch(patch_of_triangle(element.part, element.shape));
+    case ElementKind::kPatch:
+      return split_patch(element.shape);
     case ElementKind::kVolume:
     case ElementKind::kPoint:
-    case ElementKind::kSun: return false;
+    case ElementKind::kSun:
+      return false;
   }
   return false;
 }
@@ -175,12 +180,16 @@ void ElementPool::expand(std::span<const ElementId> ids) {
 std::vector<ElementId> ElementPool::leaf_elements(uint32_t part, bool back) const {
   const FaceClusterTree& tree = set_->tree(set_->parts[part]);
   const LeafMesh* leaves = leaf_meshes_[part].get();
-  std::vector<ElementId> out(leaves != nullptr ? leaves->face_count() : tree.mesh.triangles.size(), kNoElement);
-  // What lies below an element that has no children of its own side: every triangle, and every face cut by the other.
+  std::vector<ElementId> out(leaves != nullptr ? leaves->face_count() : tree.mesh.triangles.size(),
+                             kNoElement);
+  // What lies below an element that has no children of its own side: every triangle, and every face cut by
+  // the other.
   std::vector<std::vector<uint32_t>> faces_of_triangle;
   std::vector<uint32_t> first_face(tree.mesh.triangles.size() + 1, 0);
   std::vector<uint32_t> faces(out.size());
-  const auto triangle_of_face = [&](uint32_t f) { return leaves != nullptr ? leaves->triangle_of_face(f) : f; };
+  const auto triangle_of_face = [&](uint32_t f) {
+    return leaves != nullptr ? leaves->triangle_of_face(f) : f;
+  };
   for (uint32_t f = 0; f < out.size(); ++f) ++first_face[triangle_of_face(f) + 1];
   for (size_t t = 1; t < first_face.size(); ++t) first_face[t] += first_face[t - 1];
   std::vector<uint32_t> cursor(first_face.begin(), first_face.end() - 1);
@@ -225,11 +234,18 @@ std::array<uint64_t, 4> ElementPool::count_by_kind() const {
   std::array<uint64_t, 4> count{};
   for (const Element& e : elements_) {
     switch (e.kind) {
-      case ElementKind::kVolume: ++count[0]; break;
+      case ElementKind::kVolume:
+        ++count[0];
+        break;
       case ElementKind::kCluster:
-      case ElementKind::kTriangle: ++count[1]; break;
-      case ElementKind::kPatch: ++count[2]; break;
-      default: ++count[3];
+      case ElementKind::kTriangle:
+        ++count[1];
+        break;
+      case ElementKind::kPatch:
+        ++count[2];
+        break;
+      default:
+        ++count[3];
     }
   }
   return count;

@@ -1,5 +1,5 @@
-// The elements that exchange light: volume clusters, face clusters, triangles, patches and lights, in one array,
-// made on demand. This room alone knows the kinds; solvers see children, area, summed normal, samples.
+// The elements that exchange light: volume clusters, face clusters, triangles, patches and lights, in one
+// array, made on demand. This room alone knows the kinds; solvers see children, area, summed normal, samples.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -27,28 +27,30 @@ enum class ElementKind : uint8_t {
 };
 
 /// Whether it has area and may reflect.
-constexpr bool is_surface(ElementKind kind) { return kind <= ElementKind::kPatch; }
+constexpr bool is_surface(ElementKind kind) {
+  return kind <= ElementKind::kPatch;
+}
 
 /// One side of something that sends or receives light. World space.
 struct Element {
   ElementKind kind = ElementKind::kVolume;
-  bool back = false;              ///< the other side of the source's winding
-  bool flat = false;              ///< all normals agree, here and in all children: light varies with place alone
-  bool indivisible = false;       ///< has no children and will have none
+  bool back = false;         ///< the other side of the source's winding
+  bool flat = false;         ///< all normals agree, here and in all children: light varies with place alone
+  bool indivisible = false;  ///< has no children and will have none
   uint8_t depth = 0;
   ElementId parent = kNoElement;
   ElementId first_child = kNoElement;  ///< the second follows it; kNoElement while there are none
-  uint32_t part = 0;              ///< SurfaceSet::parts, for surfaces
-  uint32_t shape = 0;             ///< ClusterRef, triangle, patch number, light number, by kind
-  uint32_t samples = 0;           ///< first of kStoredSamples in the pool, for kVolume and kCluster
+  uint32_t part = 0;                   ///< SurfaceSet::parts, for surfaces
+  uint32_t shape = 0;                  ///< ClusterRef, triangle, patch number, light number, by kind
+  uint32_t samples = 0;                ///< first of kStoredSamples in the pool, for kVolume and kCluster
   vec3 centre{0};
   float radius = 0;
-  vec3 summed_normal{0};          ///< S, m^2 (equation 4.9), on the side that this element is
-  float area = 0;                 ///< m^2
-  float cone_cosine = -1;         ///< normals lie within acos(this) of S
+  vec3 summed_normal{0};   ///< S, m^2 (equation 4.9), on the side that this element is
+  float area = 0;          ///< m^2
+  float cone_cosine = -1;  ///< normals lie within acos(this) of S
   float coverage = 1;
-  vec3 reflectance{0};            ///< area average
-  vec3 exitance{0};               ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
+  vec3 reflectance{0};  ///< area average
+  vec3 exitance{0};     ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
 };
 
 /// A point on an element's real surface.
@@ -73,26 +75,33 @@ class ElementPool {
 
   const Element& operator[](ElementId id) const { return elements_[id]; }
   size_t size() const { return elements_.size(); }
-  ElementId root() const { return root_; }                        ///< kNoElement when there is no surface
-  std::span<const ElementId> lights() const { return lights_; }   ///< sky octants, point, spot and directional lights
+  ElementId root() const { return root_; }  ///< kNoElement when there is no surface
+  std::span<const ElementId> lights() const {
+    return lights_;
+  }  ///< sky octants, point, spot and directional lights
   size_t volume_clusters() const { return volume_clusters_; }
   const SurfaceSet& surfaces() const { return *set_; }
 
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
   void expand(std::span<const ElementId> ids);
 
-  /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face cluster.
-  const SurfacePoint& stored_sample(ElementId id, uint32_t i) const { return samples_[elements_[id].samples + i]; }
-  /// 4, 8 or 16 points of equal weight whose mean value is that of the element's surface: chosen from the stored samples of
-  /// clusters; on triangles and patches exact for functions of second degree.
-  /// `second` gives another set, independent of the first.
+  /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face
+  /// cluster.
+  const SurfacePoint& stored_sample(ElementId id, uint32_t i) const {
+    return samples_[elements_[id].samples + i];
+  }
+  /// 4, 8 or 16 points of equal weight whose mean value is that of the element's surface: chosen from the
+  /// stored samples of clusters; on triangles and patches exact for functions of second degree. `second`
+  /// gives another set, independent of the first.
   void quadrature(ElementId id, std::span<SurfacePoint> points, bool second = false) const;
   /// Any point: u selects by area, v moves within. For more samples than are stored.
   SurfacePoint sample_at(ElementId id, float u, float v) const;
-  /// A point on a face cluster, triangle or patch by what it sends to `x` rather than by area: large sources nearby are
-  /// sampled where they are near. `weight` is the sample's form-factor density over the density it was drawn with (its
-  /// mean over samples is the form factor times pi, occlusion apart); 0 where x is below or behind.
-  SurfacePoint sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v, float& weight) const;
+  /// A point on a face cluster, triangle or patch by what it sends to `x` rather than by area: large sources
+  /// nearby are sampled where they are near. `weight` is the sample's form-factor density over the density it
+  /// was drawn with (its mean over samples is the form factor times pi, occlusion apart); 0 where x is below
+  /// or behind.
+  SurfacePoint sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
+                              float& weight) const;
   /// A direction within a sky element.
   vec3 sky_direction(ElementId id, float u, float v) const;
 
@@ -104,7 +113,8 @@ class ElementPool {
 
   /// The leaf mesh of a part, or null when none of its triangles has been cut.
   const LeafMesh* leaf_mesh(uint32_t part) const { return leaf_meshes_[part].get(); }
-  /// Per face of a part's leaf mesh (per triangle when it has none): the deepest element on each side that holds it.
+  /// Per face of a part's leaf mesh (per triangle when it has none): the deepest element on each side that
+  /// holds it.
   std::vector<ElementId> leaf_elements(uint32_t part, bool back) const;
 
   /// Roots of the surfaces, in SurfaceSet's order.
@@ -113,7 +123,7 @@ class ElementPool {
   uint64_t memory_bytes() const;
 
  private:
-  struct Patch {                    // a node below a triangle, shared by both sides of it
+  struct Patch {  // a node below a triangle, shared by both sides of it
     uint32_t part = 0, face = 0, triangle = 0;
     uint32_t first_corner = 0, corners = 0;
     uint32_t first_child = kNoElement;
@@ -137,7 +147,8 @@ class ElementPool {
   SurfacePoint sample_cluster(const Element& element, ClusterRef ref, float u, float v) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
   SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
-  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points, bool second) const;
+  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
+                          bool second) const;
   Polygon triangle_polygon(const Element& element, uint32_t triangle) const;
   Polygon patch_polygon(const Element& element) const;
 

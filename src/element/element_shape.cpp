@@ -11,12 +11,14 @@ namespace {
 // Normals within two degrees of their mean are as good as one.
 constexpr float kFlatCosine = 0.9994f;
 
-// Steradians below which a polygon is sampled by area: it is about even there, and the angles of so small a spherical
-// triangle are lost in rounding.
+// Steradians below which a polygon is sampled by area: it is about even there, and the angles of so small a
+// spherical triangle are lost in rounding.
 constexpr float kSmallSolidAngle = 0.05f;
 
 // +1 when the element's side is the one from which the tree's corners run counter-clockwise.
-float orientation(const Part& part, const Element& element) { return element.back ? -part.winding : part.winding; }
+float orientation(const Part& part, const Element& element) {
+  return element.back ? -part.winding : part.winding;
+}
 
 vec3 side_normal(const Part& part, const Element& element, const vec3& tree_area_vector) {
   const vec3 front = part.area_map * tree_area_vector;
@@ -49,7 +51,8 @@ void ElementPool::fill_cluster(Element& element, ClusterRef ref) const {
   element.centre = vec3(part.to_world * vec4(node.centre, 1));
   element.radius = node.radius * part.scale;
   element.cone_cosine = node.cone_cosine;
-  element.flat = node.cone_cosine > kFlatCosine || (element.parent != kNoElement && elements_[element.parent].flat);
+  element.flat =
+      node.cone_cosine > kFlatCosine || (element.parent != kNoElement && elements_[element.parent].flat);
   fill_paint(element, node.first, node.count);
 }
 
@@ -62,8 +65,9 @@ void ElementPool::fill_triangle(Element& element, uint32_t triangle) const {
   element.summed_normal = orientation(part, element) * area_vector(a, b, c);
   element.area = length(element.summed_normal);
   element.centre = (a + b + c) / 3.0f;
-  element.radius = std::sqrt(std::max({dot(a - element.centre, a - element.centre), dot(b - element.centre, b - element.centre),
-                                       dot(c - element.centre, c - element.centre)}));
+  element.radius = std::sqrt(
+      std::max({dot(a - element.centre, a - element.centre), dot(b - element.centre, b - element.centre),
+                dot(c - element.centre, c - element.centre)}));
   element.cone_cosine = 1;
   element.flat = true;
   fill_paint(element, triangle, 1);
@@ -130,7 +134,8 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
   for (uint32_t i = 0; i < kPoints; ++i) {
     const UnitSquarePoint uv = r2_point(i, number);
     const vec3 p = sample_polygon(polygon, vec3(0), uv.u, uv.v).position - a;
-    const vec2 weights = glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
+    const vec2 weights =
+        glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
     const Paint one = paint_at(*set_, part, patch.triangle, weights);
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
@@ -147,7 +152,8 @@ void ElementPool::fill_volume(ElementId id) {
   element.area = a.area + b.area;
   const float share = element.area > 0 ? a.area / element.area : 0.5f;
   element.centre = share * a.centre + (1 - share) * b.centre;
-  element.radius = std::max(length(a.centre - element.centre) + a.radius, length(b.centre - element.centre) + b.radius);
+  element.radius =
+      std::max(length(a.centre - element.centre) + a.radius, length(b.centre - element.centre) + b.radius);
   element.summed_normal = a.summed_normal + b.summed_normal;
   element.cone_cosine = -1;
   element.reflectance = share * a.reflectance + (1 - share) * b.reflectance;
@@ -167,8 +173,11 @@ void ElementPool::fill_child(ElementId id) {
       }
       break;
     case ElementKind::kTriangle:
-    case ElementKind::kPatch: fill_patch(element, element.shape); break;
-    default: break;
+    case ElementKind::kPatch:
+      fill_patch(element, element.shape);
+      break;
+    default:
+      break;
   }
 }
 
@@ -186,16 +195,18 @@ void ElementPool::quadrature(ElementId id, std::span<SurfacePoint> points, bool 
   const Element& element = elements_[id];
   if (element.kind == ElementKind::kVolume || element.kind == ElementKind::kCluster) {
     const size_t stride = kStoredSamples / points.size();
-    for (size_t i = 0; i < points.size(); ++i) points[i] = samples_[element.samples + i * stride + (second ? stride / 2 : 0)];
+    for (size_t i = 0; i < points.size(); ++i)
+      points[i] = samples_[element.samples + i * stride + (second ? stride / 2 : 0)];
     return;
   }
   polygon_quadrature(polygon(id), normalize_or(element.summed_normal, vec3(0, 1, 0)), points, second);
 }
 
-// Points whose mean and covariance are the polygon's own, so that any quadratic is integrated exactly. Form factors are
-// convex towards a shared edge: random points would be noisy, and the midpoint rule would lose light everywhere.
-void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
-                                     bool second) const {
+// Points whose mean and covariance are the polygon's own, so that any quadratic is integrated exactly. Form
+// factors are convex towards a shared edge: random points would be noisy, and the midpoint rule would lose
+// light everywhere.
+void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal,
+                                     std::span<SurfacePoint> points, bool second) const {
   const vec3& a = polygon.corners[0];
   const vec3 u = normalize_or(polygon.corners[1] - a, vec3(1, 0, 0)), v = cross(normal, u);
   vec2 mean(0);
@@ -219,12 +230,13 @@ void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal,
   const double cxx = std::max(0.0, xx / area - double(mean.x) * double(mean.x)),
                cyy = std::max(0.0, yy / area - double(mean.y) * double(mean.y)),
                cxy = xy / area - double(mean.x) * double(mean.y);
-  const double angle = 0.5 * std::atan2(2 * cxy, cxx - cyy), half = std::sqrt((cxx - cyy) * (cxx - cyy) / 4 + cxy * cxy);
+  const double angle = 0.5 * std::atan2(2 * cxy, cxx - cyy),
+               half = std::sqrt((cxx - cyy) * (cxx - cyy) / 4 + cxy * cxy);
   const auto s1 = static_cast<float>(std::sqrt((cxx + cyy) / 2 + half));
   const auto s2 = static_cast<float>(std::sqrt(std::max(0.0, (cxx + cyy) / 2 - half)));
   const vec2 e1(std::cos(angle), std::sin(angle)), e2(-e1.y, e1.x);
-  // Rings of four: at the corners of the standard deviations' rectangle, and on their axes, root two further out. A corner
-  // of the first may touch a triangle's edge; a hair's breadth keeps it inside.
+  // Rings of four: at the corners of the standard deviations' rectangle, and on their axes, root two further
+  // out. A corner of the first may touch a triangle's edge; a hair's breadth keeps it inside.
   for (size_t i = 0; i < points.size(); ++i) {
     const float f = 0.995f, x = (i & 1) != 0 ? f : -f, y = (i & 2) != 0 ? f : -f;
     vec2 offset;
@@ -316,13 +328,15 @@ Polygon ElementPool::patch_polygon(const Element& element) const {
   polygon.count = patch.corners;
   std::copy_n(&corners_[patch.first_corner], patch.corners, polygon.corners.begin());
   if (orientation(set_->parts[element.part], element) < 0)
-    std::reverse(polygon.corners.begin(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count));
+    std::reverse(polygon.corners.begin(),
+                 polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count));
   return polygon;
 }
 
 Polygon ElementPool::polygon(ElementId id) const {
   const Element& element = elements_[id];
-  return element.kind == ElementKind::kPatch ? patch_polygon(element) : triangle_polygon(element, element.shape);
+  return element.kind == ElementKind::kPatch ? patch_polygon(element)
+                                             : triangle_polygon(element, element.shape);
 }
 
 SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
@@ -365,13 +379,16 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   }
   std::array<vec3, kMaxPolygon> from_x;
   for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
-  const vec3 area = 0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
+  const vec3 area =
+      0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
   const vec3 normal = normalize_or(area, vec3(0, 1, 0));
   weight = 0;
   float angle = 0, whole = 0;
   for (size_t i = 1; i + 1 < polygon.count; ++i) {
-    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)), normalize_or(from_x[i + 1], vec3(0)));
-    whole += 0.5f * length(cross(polygon.corners[i] - polygon.corners[0], polygon.corners[i + 1] - polygon.corners[0]));
+    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)),
+                         normalize_or(from_x[i + 1], vec3(0)));
+    whole += 0.5f * length(cross(polygon.corners[i] - polygon.corners[0],
+                                 polygon.corners[i + 1] - polygon.corners[0]));
   }
   const float plane = -dot(from_x[0], normal);
   if (plane <= 0) return {polygon.corners[0], normal};
@@ -385,8 +402,8 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
   const float towards = -dot(direction, normal), here = dot(direction, n);
   if (towards <= 1e-5f) return {polygon.corners[0], normal};
-  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past the polygon's end and into
-  // what stands there: it is drawn back by as much.
+  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past the
+  // polygon's end and into what stands there: it is drawn back by as much.
   const float drawn_back = 1 - std::min(0.1f, 2e-6f / towards);
   weight = std::max(0.0f, here) * angle / chance;
   return {x + direction * (drawn_back * plane / towards), normal};

@@ -71,8 +71,8 @@ uint32_t LeafMesh::split_face(uint32_t from, uint32_t to) {
   while (next_[before_to] != to) before_to = next_[before_to];
   uint32_t before_from = to;
   while (next_[before_from] != from) before_from = next_[before_from];
-  const uint32_t back = add_edge(origin_[to], old_face);       // closes from .. before_to
-  const uint32_t forth = add_edge(origin_[from], new_face);    // closes to .. before_from
+  const uint32_t back = add_edge(origin_[to], old_face);     // closes from .. before_to
+  const uint32_t forth = add_edge(origin_[from], new_face);  // closes to .. before_from
   next_[before_to] = back;
   next_[back] = from;
   next_[before_from] = forth;
@@ -88,8 +88,8 @@ uint32_t LeafMesh::split_face(uint32_t from, uint32_t to) {
 
 uint64_t LeafMesh::memory_bytes() const {
   return positions_.capacity() * sizeof(vec3) +
-         (origin_.capacity() + next_.capacity() + twin_.capacity() + face_.capacity() + face_edge_.capacity() +
-          face_triangle_.capacity()) *
+         (origin_.capacity() + next_.capacity() + twin_.capacity() + face_.capacity() +
+          face_edge_.capacity() + face_triangle_.capacity()) *
              sizeof(uint32_t);
 }
 

@@ -1,5 +1,5 @@
-// The mesh at the bottom of the hierarchy: a part's triangles and the patches they are cut into, as half-edges, so that
-// a cut made in one face is seen by its neighbour (thesis 6.2.3).
+// The mesh at the bottom of the hierarchy: a part's triangles and the patches they are cut into, as
+// half-edges, so that a cut made in one face is seen by its neighbour (thesis 6.2.3).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace goldthread {
 
 constexpr uint32_t kNoEdge = 0xffffffffu;
 
-/// Half-edges 3t..3t+2 and face t are the part's triangle t until it is cut. Faces are convex; a loop may hold corners on
-/// a straight line, where a neighbour was cut (T-vertices). World space. Own structure rather than OpenMesh, which refuses
-/// the non-manifold edges of real models and costs twice the time to fill.
+/// Half-edges 3t..3t+2 and face t are the part's triangle t until it is cut. Faces are convex; a loop may
+/// hold corners on a straight line, where a neighbour was cut (T-vertices). World space. Own structure rather
+/// than OpenMesh, which refuses the non-manifold edges of real models and costs twice the time to fill.
 class LeafMesh {
  public:
   LeafMesh(const Part& part, const TriangleMesh& mesh);
@@ -35,8 +35,8 @@ class LeafMesh {
   /// Puts a vertex at `position` on an edge, in both faces that share it. The new half-edge follows `edge`.
   uint32_t split_edge(uint32_t edge, const vec3& position);
 
-  /// Cuts a face between the origins of two of its half-edges that are not neighbours. The part that starts at `from`
-  /// keeps the face's number; the other's new number is returned.
+  /// Cuts a face between the origins of two of its half-edges that are not neighbours. The part that starts
+  /// at `from` keeps the face's number; the other's new number is returned.
   uint32_t split_face(uint32_t from, uint32_t to);
 
   uint64_t memory_bytes() const;

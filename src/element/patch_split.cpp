@@ -1,5 +1,5 @@
-// Cutting triangles and patches in two (thesis 4.4): across the longer side of the minimum-area rectangle, snapped to
-// corners and T-vertices nearby so that few new ones arise.
+// Cutting triangles and patches in two (thesis 4.4): across the longer side of the minimum-area rectangle,
+// snapped to corners and T-vertices nearby so that few new ones arise.
 #include <algorithm>
 
 #include "element/element_pool.h"
@@ -59,13 +59,15 @@ size_t find_crossing(const CutFace& cut, bool rising) {
   return count;
 }
 
-// The half-edge that starts at the cut's end on edge `i`: an existing corner if one is near, else a new vertex.
+// The half-edge that starts at the cut's end on edge `i`: an existing corner if one is near, else a new
+// vertex.
 uint32_t make_end(LeafMesh& mesh, const CutFace& cut, size_t i, bool snap) {
   const size_t next = (i + 1) % cut.edges.size();
   const float here = std::abs(cut.distance[i]), there = std::abs(cut.distance[next]);
   const float reach = snap ? kSnap * cut.half_length : 0.0f;
   if (std::min(here, there) <= reach) return cut.edges[here < there ? i : next];
-  const vec3 a = mesh.positions()[mesh.origin(cut.edges[i])], b = mesh.positions()[mesh.origin(cut.edges[next])];
+  const vec3 a = mesh.positions()[mesh.origin(cut.edges[i])],
+             b = mesh.positions()[mesh.origin(cut.edges[next])];
   mesh.split_edge(cut.edges[i], a + (here / (here + there)) * (b - a));
   return mesh.next(cut.edges[i]);
 }
@@ -80,8 +82,8 @@ bool would_degenerate(const CutFace& cut, size_t i, size_t j) {
     return here < there ? k : next;
   };
   const size_t a = snapped(i), b = snapped(j);
-  // A straight run of T-vertices between the ends cuts nothing off either; a snapped end stays only when some corner
-  // on each side is clearly away from the line.
+  // A straight run of T-vertices between the ends cuts nothing off either; a snapped end stays only when some
+  // corner on each side is clearly away from the line.
   float below = 0, above = 0;
   for (size_t k = 0; k < count; ++k) {
     if (k == a || k == b) continue;
@@ -119,8 +121,8 @@ void ElementPool::store_polygon(Patch& patch) {
   float largest = 0;
   for (const uint32_t v : loop) largest = std::max(largest, dot(p[v] - p[loop[0]], p[v] - p[loop[0]]));
   patch.first_corner = static_cast<uint32_t>(corners_.size());
-  // T-vertices add nothing to the shape. The first try drops just them; a polygon that is still too large (rounding can
-  // bend a straight run) loses its flattest corners.
+  // T-vertices add nothing to the shape. The first try drops just them; a polygon that is still too large
+  // (rounding can bend a straight run) loses its flattest corners.
   std::vector<vec3> kept;
   for (float tolerance = 1e-5f; kept.size() < 3 || kept.size() > kMaxPolygon - 2; tolerance *= 4) {
     kept.clear();

@@ -18,8 +18,9 @@ bool is_similarity(const mat3& m) {
   const float a = dot(m[0], m[0]), b = dot(m[1], m[1]), c = dot(m[2], m[2]);
   const float most = std::max({a, b, c});
   const float tolerance = 1e-4f * most;
-  return std::abs(a - b) < tolerance && std::abs(b - c) < tolerance && std::abs(dot(m[0], m[1])) < tolerance &&
-         std::abs(dot(m[1], m[2])) < tolerance && std::abs(dot(m[2], m[0])) < tolerance;
+  return std::abs(a - b) < tolerance && std::abs(b - c) < tolerance &&
+         std::abs(dot(m[0], m[1])) < tolerance && std::abs(dot(m[1], m[2])) < tolerance &&
+         std::abs(dot(m[2], m[0])) < tolerance;
 }
 
 std::vector<vec3> transformed(const std::vector<vec3>& positions, const mat4& m) {
@@ -57,12 +58,13 @@ std::vector<TreeJob> list_parts(const Scene& scene, SurfaceSet& set) {
         part.area_map = mat3(part.winding);
         jobs.push_back({&mesh.primitives[p], true, instance.transform});
       } else {
-        const auto [entry, added] = shared.try_emplace({instance.mesh, p}, static_cast<uint32_t>(jobs.size()));
+        const auto [entry, added] =
+            shared.try_emplace({instance.mesh, p}, static_cast<uint32_t>(jobs.size()));
         if (added) jobs.push_back({&mesh.primitives[p]});
         part.tree = entry->second;
         part.to_world = instance.transform;
-        part.scale = std::sqrt(std::cbrt(std::abs(dot(linear[0], linear[0]) * dot(linear[1], linear[1]) *
-                                                  dot(linear[2], linear[2]))));
+        part.scale = std::sqrt(std::cbrt(
+            std::abs(dot(linear[0], linear[0]) * dot(linear[1], linear[1]) * dot(linear[2], linear[2]))));
         part.area_map = part.winding * area_vector_transform(linear);
       }
       set.parts.push_back(std::move(part));
@@ -94,9 +96,12 @@ vec4 base_colour_at(const Scene& scene, const Primitive& primitive, uint32_t sou
 
 float coverage_of(const Material& material, float alpha) {
   switch (material.alpha_mode) {
-    case AlphaMode::kOpaque: return 1;
-    case AlphaMode::kMask: return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
-    case AlphaMode::kBlend: return std::clamp(alpha, 0.0f, 1.0f);
+    case AlphaMode::kOpaque:
+      return 1;
+    case AlphaMode::kMask:
+      return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+    case AlphaMode::kBlend:
+      return std::clamp(alpha, 0.0f, 1.0f);
   }
   return 1;
 }
@@ -109,7 +114,8 @@ Paint paint_of_source(const Scene& scene, const Primitive& primitive, uint32_t s
   float metallic = material.metallic;
   if (material.metallic_texture.present() && metallic > 0)
     metallic *= sample_data_texture(material.metallic_texture, scene.images,
-                                    texcoord_at(primitive, material.metallic_texture, source, weights)).z;
+                                    texcoord_at(primitive, material.metallic_texture, source, weights))
+                    .z;
   const vec3 reflectance = glm::clamp(vec3(colour) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
   paint.reflectance = paint.coverage * reflectance;
   vec3 emission = material.emission;
@@ -189,7 +195,8 @@ void paint_part(const SurfaceSet& set, Part& part) {
     part.triangle_exitance[t] = paints[t].exitance;
     part.triangle_coverage[t] = paints[t].coverage;
     const UVec3& c = mesh.triangles[t];
-    const double a = static_cast<double>(length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z])));
+    const double a = static_cast<double>(
+        length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z])));
     area += a;
     reflectance += a * dvec3(paints[t].reflectance);
     exitance += a * dvec3(paints[t].exitance);
@@ -220,7 +227,8 @@ void list_surfaces(SurfaceSet& set) {
     for (const ClusterRef root : tree.roots) {
       if (is_triangle(root)) {
         const UVec3& c = tree.mesh.triangles[triangle_of(root)];
-        set.area += static_cast<double>(length(area_vector(part.positions[c.x], part.positions[c.y], part.positions[c.z])));
+        set.area += static_cast<double>(
+            length(area_vector(part.positions[c.x], part.positions[c.y], part.positions[c.z])));
       } else {
         set.area += static_cast<double>(tree.nodes[root].area * part.scale * part.scale);
       }
@@ -244,8 +252,9 @@ SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel) {
   parallel_for(jobs.size(), [&](size_t j) {
     if (cancel.cancelled()) return;
     const Primitive& primitive = *jobs[j].primitive;
-    TriangleMesh mesh = jobs[j].bend ? weld(transformed(primitive.positions, jobs[j].transform), primitive.indices)
-                                     : weld(primitive.positions, primitive.indices);
+    TriangleMesh mesh = jobs[j].bend
+                            ? weld(transformed(primitive.positions, jobs[j].transform), primitive.indices)
+                            : weld(primitive.positions, primitive.indices);
     set.trees[j] = build_face_clusters(std::move(mesh));
   });
   for (const FaceClusterTree& tree : set.trees) set.face_clusters += tree.nodes.size();
@@ -282,7 +291,8 @@ WorldTriangles world_triangles(const SurfaceSet& set) {
 float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
   const Primitive& primitive = primitive_of(*set.scene, part);
   const uint32_t source = set.tree(part).mesh.source_triangles[triangle];
-  return coverage_of(set.scene->materials[part.material], base_colour_at(*set.scene, primitive, source, weights).w);
+  return coverage_of(set.scene->materials[part.material],
+                     base_colour_at(*set.scene, primitive, source, weights).w);
 }
 
 const Part& part_of_triangle(const SurfaceSet& set, uint32_t triangle) {
@@ -292,8 +302,8 @@ const Part& part_of_triangle(const SurfaceSet& set, uint32_t triangle) {
 }
 
 Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
-  return paint_of_source(*set.scene, primitive_of(*set.scene, part), set.tree(part).mesh.source_triangles[triangle],
-                         weights);
+  return paint_of_source(*set.scene, primitive_of(*set.scene, part),
+                         set.tree(part).mesh.source_triangles[triangle], weights);
 }
 
 bool is_textured(const SurfaceSet& set, const Part& part) {

@@ -10,26 +10,28 @@
 
 namespace goldthread {
 
-/// A primitive of an instance, placed in the world. Its clusters are those of the mesh, shared by all instances; only
-/// an instance that is scaled unevenly has a tree of its own, since no length or area survives that.
+/// A primitive of an instance, placed in the world. Its clusters are those of the mesh, shared by all
+/// instances; only an instance that is scaled unevenly has a tree of its own, since no length or area
+/// survives that.
 struct Part {
   uint32_t instance = 0, primitive = 0, material = 0;
-  uint32_t tree = 0;              ///< SurfaceSet::trees
-  mat4 to_world{1};               ///< tree space to world: a similarity, perhaps mirrored
-  mat3 area_map{1};               ///< carries the tree's area vectors to world ones of the front side
-  float scale = 1;                ///< of lengths
-  float winding = 1;              ///< -1 when mirrored: then the front of a triangle is where its corners run clockwise
-  std::vector<vec3> positions;    ///< world, per vertex of the tree's mesh
-  uint32_t first_triangle = 0;    ///< the number of its triangle 0 among all of the world's
-  vec3 reflectance{0};            ///< times coverage, clamped below 1
-  vec3 exitance{0};               ///< lm/m^2, times coverage
-  float coverage = 1;             ///< share of the area that is there (alpha)
+  uint32_t tree = 0;  ///< SurfaceSet::trees
+  mat4 to_world{1};   ///< tree space to world: a similarity, perhaps mirrored
+  mat3 area_map{1};   ///< carries the tree's area vectors to world ones of the front side
+  float scale = 1;    ///< of lengths
+  float winding = 1;  ///< -1 when mirrored: then the front of a triangle is where its corners run clockwise
+  std::vector<vec3> positions;             ///< world, per vertex of the tree's mesh
+  uint32_t first_triangle = 0;             ///< the number of its triangle 0 among all of the world's
+  vec3 reflectance{0};                     ///< times coverage, clamped below 1
+  vec3 exitance{0};                        ///< lm/m^2, times coverage
+  float coverage = 1;                      ///< share of the area that is there (alpha)
   std::vector<vec3> triangle_reflectance;  ///< area averages per tree triangle; empty when uniform
   std::vector<vec3> triangle_exitance;     ///< the same, empty when uniform
   std::vector<float> triangle_coverage;    ///< the same, empty when uniform
 };
 
-/// One side of a connected component of a part: the unit that sends and receives light. Two-sided materials give two.
+/// One side of a connected component of a part: the unit that sends and receives light. Two-sided materials
+/// give two.
 struct Surface {
   uint32_t part = 0;
   ClusterRef root = 0;
@@ -37,15 +39,15 @@ struct Surface {
 };
 
 struct SurfaceSet {
-  const Scene* scene = nullptr;   ///< borrowed
+  const Scene* scene = nullptr;  ///< borrowed
   std::vector<FaceClusterTree> trees;
   std::vector<Part> parts;
   std::vector<Surface> surfaces;
-  uint32_t triangles = 0;         ///< of all parts
-  double area = 0;                ///< of all triangles, one side, m^2
-  uint64_t face_clusters = 0;     ///< inner nodes of all trees
-  SkippedTriangles skipped;       ///< over all instances
-  uint32_t clamped_materials = 0; ///< whose reflectance was cut to kMaxReflectance
+  uint32_t triangles = 0;          ///< of all parts
+  double area = 0;                 ///< of all triangles, one side, m^2
+  uint64_t face_clusters = 0;      ///< inner nodes of all trees
+  SkippedTriangles skipped;        ///< over all instances
+  uint32_t clamped_materials = 0;  ///< whose reflectance was cut to kMaxReflectance
 
   const FaceClusterTree& tree(const Part& part) const { return trees[part.tree]; }
 };
@@ -56,8 +58,8 @@ constexpr float kMaxReflectance = 0.95f;
 /// Welds, clusters and places every lit primitive of `scene`, which must outlive the result.
 SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel);
 
-/// The world's triangles for the ray caster, numbered by Part::first_triangle, and which of them let rays through
-/// (alpha mask and blend; primitives of unlit materials block as all others).
+/// The world's triangles for the ray caster, numbered by Part::first_triangle, and which of them let rays
+/// through (alpha mask and blend; primitives of unlit materials block as all others).
 struct WorldTriangles {
   std::vector<vec3> positions;
   std::vector<UVec3> triangles;

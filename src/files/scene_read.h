@@ -8,7 +8,8 @@
 namespace goldthread {
 
 /// Reads .gltf/.glb (tinygltf) or .obj/.ply/.stl/.fbx/.dae (assimp). Errors name file, place and cure.
-/// Every index in the returned Scene is in range; counts in the file are checked before anything is allocated.
+/// Every index in the returned Scene is in range; counts in the file are checked before anything is
+/// allocated.
 Result<Scene> read_scene(const std::string& file);
 
 }  // namespace goldthread

@@ -6,7 +6,8 @@
 namespace goldthread {
 namespace {
 
-// Cuts a polygon of directions by the half space dot(n, v) >= 0 (Sutherland-Hodgman, one plane). Returns the count.
+// Cuts a polygon of directions by the half space dot(n, v) >= 0 (Sutherland-Hodgman, one plane). Returns the
+// count.
 size_t clip_to_horizon(const vec3& n, std::span<const vec3> in, std::array<vec3, kMaxPolygon + 1>& out) {
   size_t count = 0;
   vec3 previous = in.back();
@@ -24,8 +25,8 @@ size_t clip_to_horizon(const vec3& n, std::span<const vec3> in, std::array<vec3,
   return count;
 }
 
-// Sum of Theta * Gamma / 2 pi over the edges of a polygon of directions, clockwise or not deciding the sign. Double
-// precision: the edge terms of a small, far polygon cancel almost wholly.
+// Sum of Theta * Gamma / 2 pi over the edges of a polygon of directions, clockwise or not deciding the sign.
+// Double precision: the edge terms of a small, far polygon cancel almost wholly.
 vec3 contour_sum(std::span<const vec3> directions) {
   dvec3 sum(0);
   dvec3 previous = directions.back();
@@ -36,7 +37,8 @@ vec3 contour_sum(std::span<const vec3> directions) {
     const dvec3 normal = glm::cross(previous, current);
     const double sine = glm::length(normal);
     const double cosine = glm::dot(previous, current);
-    // A corner at x itself, or an edge through it, adds a plane through x that lies in the polygon's own: nothing.
+    // A corner at x itself, or an edge through it, adds a plane through x that lies in the polygon's own:
+    // nothing.
     if (sine > 1e-14 * (previous_length * current_length + 1e-300))
       sum += normal * (std::atan2(sine, cosine) / sine);
     previous = current;
@@ -56,7 +58,8 @@ vec3 polygon_form_factor(const vec3& x, const vec3& n, std::span<const vec3> cor
     (dot(n, directions[i]) < 0 ? below : above) = true;
   }
   if (!above) return vec3(0);
-  // From the front, corners that run counter-clockwise run clockwise as directions from x: the contour sum points away.
+  // From the front, corners that run counter-clockwise run clockwise as directions from x: the contour sum
+  // points away.
   if (!below) {
     const vec3 m = -contour_sum({directions.data(), count});
     return dot(m, n) > 0 ? m : vec3(0);

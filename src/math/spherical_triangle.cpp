@@ -15,7 +15,9 @@ float solid_angle(const vec3& a, const vec3& b, const vec3& c) {
 vec3 sample_spherical_triangle(const vec3& a, const vec3& b, const vec3& c, float u, float v) {
   const vec3 ab = normalize_or(cross(a, b), vec3(0)), bc = normalize_or(cross(b, c), vec3(0)),
              ca = normalize_or(cross(c, a), vec3(0));
-  const auto angle = [](const vec3& p, const vec3& q) { return std::acos(std::clamp(dot(p, q), -1.0f, 1.0f)); };
+  const auto angle = [](const vec3& p, const vec3& q) {
+    return std::acos(std::clamp(dot(p, q), -1.0f, 1.0f));
+  };
   const float alpha = angle(ab, -ca), beta = angle(bc, -ab), gamma = angle(ca, -bc);
   const float area = u * (alpha + beta + gamma - kPi);
   const float cos_alpha = std::cos(alpha), sin_alpha = std::sin(alpha), cos_c = dot(a, b);
@@ -37,7 +39,8 @@ vec3 sample_spherical_polygon(std::span<const vec3> corners, float u, float v) {
   for (size_t i = 0; i < corners.size(); ++i) unit[i] = normalize_or(corners[i], vec3(0));
   std::array<float, kMaxPolygon> angles{};
   float total = 0;
-  for (size_t i = 1; i + 1 < corners.size(); ++i) total += angles[i] = solid_angle(unit[0], unit[i], unit[i + 1]);
+  for (size_t i = 1; i + 1 < corners.size(); ++i)
+    total += angles[i] = solid_angle(unit[0], unit[i], unit[i + 1]);
   if (!(total > 0)) return vec3(0);
   float target = u * total;
   size_t i = 1;

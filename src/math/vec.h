@@ -23,7 +23,9 @@ using UVec3 = glm::uvec3;
 
 constexpr float kPi = 3.14159265358979323846f;
 
-inline bool is_finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// v scaled to length 1, or `otherwise` when v is (nearly) zero.
 inline vec3 normalize_or(const vec3& v, const vec3& otherwise) {

@@ -14,11 +14,11 @@ struct SkippedTriangles {
   uint64_t degenerate = 0;  ///< no area: corners coincide or lie on a line
 };
 
-/// Positions merged where equal (glTF splits vertices at every normal and UV seam; light must not see that), and the
-/// triangles over them. Mesh space.
+/// Positions merged where equal (glTF splits vertices at every normal and UV seam; light must not see that),
+/// and the triangles over them. Mesh space.
 struct TriangleMesh {
   std::vector<vec3> positions;
-  std::vector<UVec3> triangles;            ///< corners as indices into positions, in the source's order and winding
+  std::vector<UVec3> triangles;  ///< corners as indices into positions, in the source's order and winding
   std::vector<uint32_t> source_triangles;  ///< per triangle: its number in the source primitive
   SkippedTriangles skipped;
 };
@@ -27,8 +27,8 @@ struct TriangleMesh {
 /// Corner k of a kept triangle is corner k of its source triangle.
 TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices);
 
-/// The normal of a triangle times its area. Worked out in double: the cross product of two long sides of a thin
-/// triangle loses its leading digits, and CAD is full of those.
+/// The normal of a triangle times its area. Worked out in double: the cross product of two long sides of a
+/// thin triangle loses its leading digits, and CAD is full of those.
 inline vec3 area_vector(const vec3& a, const vec3& b, const vec3& c) {
   const dvec3 from(a);
   return vec3(0.5 * cross(dvec3(b) - from, dvec3(c) - from));

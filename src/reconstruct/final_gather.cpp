@@ -17,10 +17,11 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
 }  // namespace
 
 Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
-               const GatherOptions& options, uint32_t seed, RayCount& rays) {
+                   const GatherOptions& options, uint32_t seed, RayCount& rays) {
   const ElementPool& pool = solver.pool();
   const RadiosityState& state = solver.state();
-  // What the leaf has in all, against which single links are weighed; its own value may be nought in a shadow.
+  // What the leaf has in all, against which single links are weighed; its own value may be nought in a
+  // shadow.
   const float whole = largest(state.irradiance[leaf]) + 1e-20f;
   vec3 sum(0);
   float faced = 0, seen = 0;

@@ -15,11 +15,11 @@ struct Gathered {
   float seen = 1;      ///< sum of the visible form factors
 };
 
-/// Irradiance at `x` with unit normal `n`, which belongs to leaf element `leaf`: the links into it and all elements
-/// above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew), but for those that
-/// bring next to nothing, which serve as they are. Rays are cast for links that bring a share of the light worth them; for
-/// the rest the links' own sampled visibility serves.
+/// Irradiance at `x` with unit normal `n`, which belongs to leaf element `leaf`: the links into it and all
+/// elements above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew), but
+/// for those that bring next to nothing, which serve as they are. Rays are cast for links that bring a share
+/// of the light worth them; for the rest the links' own sampled visibility serves.
 Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
-               const GatherOptions& options, uint32_t seed, RayCount& rays);
+                   const GatherOptions& options, uint32_t seed, RayCount& rays);
 
 }  // namespace goldthread

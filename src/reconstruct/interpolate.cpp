@@ -9,18 +9,20 @@ namespace {
 
 // Leaves with no more points than this are gathered at all of them.
 constexpr uint32_t kFewPoints = 12;
-// A leaf that bends round a crease is no smooth piece to interpolate over; only where there are very many points must it do.
+// A leaf that bends round a crease is no smooth piece to interpolate over; only where there are very many
+// points must it do.
 constexpr float kCreaseCosine = 0.5f;
 constexpr uint32_t kFewOnCreases = 64;
 // Keys that a larger leaf is given at least.
 constexpr uint32_t kLeastKeys = 6;
-// And how far its other points may be from one: squared distance over squared radius, plus that of the unit normals.
+// And how far its other points may be from one: squared distance over squared radius, plus that of the unit
+// normals.
 constexpr float kFarthest = 0.5f;
 
 }  // namespace
 
-KeyPoints::KeyPoints(const HierarchicalSolver& solver, const PartPoints& points, const std::vector<ElementId>& leaves,
-                     bool back)
+KeyPoints::KeyPoints(const HierarchicalSolver& solver, const PartPoints& points,
+                     const std::vector<ElementId>& leaves, bool back)
     : solver_(solver), points_(points), back_(back) {
   group_points(leaves);
   choose_keys();
@@ -38,7 +40,8 @@ void KeyPoints::group_points(const std::vector<ElementId>& leaves) {
   pairs.reserve(points_.corners.size());
   for (uint32_t f = 0; f < leaves.size(); ++f) {
     if (leaves[f] == kNoElement) continue;
-    const auto leaf = static_cast<uint64_t>(std::lower_bound(ids.begin(), ids.end(), leaves[f]) - ids.begin());
+    const auto leaf =
+        static_cast<uint64_t>(std::lower_bound(ids.begin(), ids.end(), leaves[f]) - ids.begin());
     for (uint32_t c = points_.corner_first[f]; c < points_.corner_first[f + 1]; ++c)
       pairs.push_back(leaf << 32 | points_.corners[c]);
   }
@@ -157,7 +160,8 @@ void KeyPoints::interpolate(std::vector<vec3>& light) const {
         const uint32_t first = point_first_[p], end = point_first_[p + 1];
         if (is_key_[p] != 0 || first == end) return;
         vec3 sum(0);
-        for (uint32_t i = first; i < end; ++i) sum += within(leaves_[point_leaf_[i]], static_cast<uint32_t>(p), light);
+        for (uint32_t i = first; i < end; ++i)
+          sum += within(leaves_[point_leaf_[i]], static_cast<uint32_t>(p), light);
         light[p] = sum / static_cast<float>(end - first);
       },
       256);

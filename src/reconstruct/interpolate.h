@@ -9,20 +9,23 @@
 
 namespace goldthread {
 
-/// Light points of one side of a part, by the leaf elements that they belong to. A face cluster that the solver never had
-/// to open is evenly lit but for its curvature; gathering at each of its many vertices would only repeat that. So light is
-/// gathered at a few key points: where three leaves meet, and enough others to span the cluster.
+/// Light points of one side of a part, by the leaf elements that they belong to. A face cluster that the
+/// solver never had to open is evenly lit but for its curvature; gathering at each of its many vertices would
+/// only repeat that. So light is gathered at a few key points: where three leaves meet, and enough others to
+/// span the cluster.
 class KeyPoints {
  public:
   /// `leaves`: the leaf element of every face (kNoElement for none). All are borrowed.
-  KeyPoints(const HierarchicalSolver& solver, const PartPoints& points, const std::vector<ElementId>& leaves, bool back);
+  KeyPoints(const HierarchicalSolver& solver, const PartPoints& points, const std::vector<ElementId>& leaves,
+            bool back);
 
   /// Points to gather at, ascending.
   const std::vector<uint32_t>& keys() const { return keys_; }
 
-  /// Fills every point that is no key. `light` holds the gathered irradiance at the keys. Within a leaf, what the keys have
-  /// beyond the leaf's own irradiance vector turned to their normals is interpolated by inverse distance and added to
-  /// that vector turned to the point's normal; a point of several leaves takes their mean, so that no seam shows.
+  /// Fills every point that is no key. `light` holds the gathered irradiance at the keys. Within a leaf, what
+  /// the keys have beyond the leaf's own irradiance vector turned to their normals is interpolated by inverse
+  /// distance and added to that vector turned to the point's normal; a point of several leaves takes their
+  /// mean, so that no seam shows.
   void interpolate(std::vector<vec3>& light) const;
 
  private:

@@ -20,7 +20,10 @@ struct LeafView {
   const LeafMesh* leaves;
 
   LeafView(const ElementPool& pool, uint32_t number)
-      : set(pool.surfaces()), part(set.parts[number]), mesh(set.tree(part).mesh), leaves(pool.leaf_mesh(number)) {}
+      : set(pool.surfaces()),
+        part(set.parts[number]),
+        mesh(set.tree(part).mesh),
+        leaves(pool.leaf_mesh(number)) {}
 
   uint32_t face_count() const {
     return leaves != nullptr ? leaves->face_count() : static_cast<uint32_t>(mesh.triangles.size());
@@ -47,8 +50,8 @@ struct LeafView {
     if (vertex == c.x) return {0, 0};
     if (vertex == c.y) return {1, 0};
     if (vertex == c.z) return {0, 1};
-    const dvec3 a = part.positions[c.x], e1 = dvec3(part.positions[c.y]) - a, e2 = dvec3(part.positions[c.z]) - a,
-                p = dvec3(position(vertex)) - a;
+    const dvec3 a = part.positions[c.x], e1 = dvec3(part.positions[c.y]) - a,
+                e2 = dvec3(part.positions[c.z]) - a, p = dvec3(position(vertex)) - a;
     const dvec3 n = glm::cross(e1, e2);
     const double scale = 1 / std::max(glm::dot(n, n), 1e-300);
     dvec2 w(glm::dot(glm::cross(p, e2), n) * scale, glm::dot(glm::cross(e1, p), n) * scale);
@@ -73,7 +76,8 @@ struct NormalSource {
     return normalize_or(view.part.winding * area_vector(p[c.x], p[c.y], p[c.z]), vec3(0, 1, 0));
   }
 
-  // The normal that light falls on at a corner: interpolated where the source gives good ones, flat otherwise.
+  // The normal that light falls on at a corner: interpolated where the source gives good ones, flat
+  // otherwise.
   vec3 at(uint32_t t, const vec3& flat, vec2 w) const {
     const Primitive& primitive = primitive_of(view.set, view.part);
     if (primitive.normals.empty()) return flat;
@@ -149,7 +153,9 @@ bool keep_source_mesh(const LeafView& view, const Primitive& primitive, const Pa
   return true;
 }
 
-uint64_t key(uint32_t a, uint32_t b) { return uint64_t{a} << 32 | b; }
+uint64_t key(uint32_t a, uint32_t b) {
+  return uint64_t{a} << 32 | b;
+}
 
 }  // namespace
 
@@ -163,8 +169,8 @@ LitPrimitive build_output_mesh(const ElementPool& pool, uint32_t part, const Par
   out.source_mesh = keep_source_mesh(view, primitive, points, point_of_vertex);
   if (out.source_mesh) return out;
   point_of_vertex.clear();
-  // A corner of the source is one vertex for each light there; a new vertex is one for each source triangle it is cut
-  // from, since attributes may jump between them.
+  // A corner of the source is one vertex for each light there; a new vertex is one for each source triangle
+  // it is cut from, since attributes may jump between them.
   std::unordered_map<uint64_t, uint32_t> of_source, of_new;
   std::vector<uint32_t> loop, local;
   std::vector<vec3> places;

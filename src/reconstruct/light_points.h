@@ -1,4 +1,5 @@
-// Where irradiance is wanted: the corners of the leaf mesh, one point for each smooth patch of surface that meets there.
+// Where irradiance is wanted: the corners of the leaf mesh, one point for each smooth patch of surface that
+// meets there.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,28 +9,30 @@
 
 namespace goldthread {
 
-/// A corner of the leaf mesh with the normal that light falls on. Corners of adjoining faces are one point where their
-/// normals agree, several where they crease.
+/// A corner of the leaf mesh with the normal that light falls on. Corners of adjoining faces are one point
+/// where their normals agree, several where they crease.
 struct LightPoint {
   vec3 position{0};
-  vec3 normal{0};      ///< unit, on the front: the source's vertex normals, or the faces' own
-  uint32_t face = 0;   ///< the smallest leaf face it belongs to
+  vec3 normal{0};     ///< unit, on the front: the source's vertex normals, or the faces' own
+  uint32_t face = 0;  ///< the smallest leaf face it belongs to
 };
 
 /// The final mesh of a part: triangulated leaf faces over light points.
 struct PartPoints {
   std::vector<LightPoint> points;
-  std::vector<uint32_t> corner_first;   ///< per leaf face, first of its corners in `corners`; one more at the end
-  std::vector<uint32_t> corners;        ///< light point of each face corner, in the face's loop order
-  std::vector<vec3> face_centres;       ///< per leaf face
-  std::vector<vec3> face_normals;       ///< per leaf face, unit, on the front, of the geometry itself
+  std::vector<uint32_t>
+      corner_first;                ///< per leaf face, first of its corners in `corners`; one more at the end
+  std::vector<uint32_t> corners;   ///< light point of each face corner, in the face's loop order
+  std::vector<vec3> face_centres;  ///< per leaf face
+  std::vector<vec3> face_normals;  ///< per leaf face, unit, on the front, of the geometry itself
 };
 
 /// `normal_agreement`: cosine above which corners at one vertex share their light.
 PartPoints collect_light_points(const ElementPool& pool, uint32_t part, float normal_agreement = 0.98f);
 
 /// The lit primitive without its light: which source vertex or place each output vertex is, the faces, and in
-/// `point_of_vertex` whose light point's light each vertex takes (kNoPoint: none, a vertex that no face uses).
+/// `point_of_vertex` whose light point's light each vertex takes (kNoPoint: none, a vertex that no face
+/// uses).
 constexpr uint32_t kNoPoint = 0xffffffffu;
 LitPrimitive build_output_mesh(const ElementPool& pool, uint32_t part, const PartPoints& points,
                                std::vector<uint32_t>& point_of_vertex);

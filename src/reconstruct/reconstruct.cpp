@@ -25,10 +25,10 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
       const uint32_t p = points.corners[c];
       const vec3 n = back ? -points.points[p].normal : points.points[p].normal;
       // A flat leaf knows how its light varies with place, a curved one how it does with the normal.
-      const vec3 turned =
-          leaf.flat
-              ? glm::max(solver.state().irradiance[leaves[f]] + (points.points[p].position - leaf.centre) * vector, vec3(0))
-              : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
+      const vec3 turned = leaf.flat ? glm::max(solver.state().irradiance[leaves[f]] +
+                                                   (points.points[p].position - leaf.centre) * vector,
+                                               vec3(0))
+                                    : glm::max(n * vector, vec3(0)) + solver.state().ambient[leaves[f]];
       sum[p] += turned;
       weight[p] += 1;
     }
@@ -38,17 +38,18 @@ std::vector<vec3> average_side(const HierarchicalSolver& solver, const PartPoint
   return sum;
 }
 
-// Points on an edge are drawn a little into their face: at the edge itself, a wall that stands on a floor is neither
-// before nor behind it.
+// Points on an edge are drawn a little into their face: at the edge itself, a wall that stands on a floor is
+// neither before nor behind it.
 vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) {
   const vec3 way = points.face_centres[point.face] - point.position;
   const float distance = length(way);
-  const float step = std::min(0.5f * distance, std::max(0.01f * distance, 4 * epsilon));
+  const float step = std::min(0.5f * distance, std::max(0.03f * distance, 16 * epsilon));
   return point.position + way * (distance > 0 ? step / distance : 0.0f);
 }
 
-// A vertex normal that leans from its face looks partly below it, where nothing comes from: (1 - cos) / 2 of its hemisphere.
-// What it would get of an even surrounding is restored, as far as it does see less than all there is.
+// A vertex normal that leans from its face looks partly below it, where nothing comes from: (1 - cos) / 2 of
+// its hemisphere. What it would get of an even surrounding is restored, as far as it does see less than all
+// there is.
 float horizon_gain(float cosine, float seen) {
   return std::clamp(1 / std::max(seen, 1e-3f), 1.0f, 2 / (1 + std::clamp(cosine, 0.0f, 1.0f)));
 }
@@ -56,8 +57,9 @@ float horizon_gain(float cosine, float seen) {
 // A point that sees less than this share of what lies before it is inside or behind something.
 constexpr float kBuried = 0.08f;
 
-// Gives points that lie buried (a ceiling's behind the lamp that hangs on it) the light of their open neighbours. Nobody
-// sees the points themselves, but the faces that reach out from under cover would darken towards them.
+// Gives points that lie buried (a ceiling's behind the lamp that hangs on it) the light of their open
+// neighbours. Nobody sees the points themselves, but the faces that reach out from under cover would darken
+// towards them.
 void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vector<vec3>& light) {
   for (int ring = 0; ring < 2; ++ring) {
     std::vector<vec3> sum(light.size(), vec3(0));
@@ -84,8 +86,9 @@ void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vec
 }
 
 std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints& points,
-                              const std::vector<ElementId>& leaves, bool back, const ReconstructOptions& options,
-                              const CancelToken& cancel, ReconstructStats& stats) {
+                              const std::vector<ElementId>& leaves, bool back,
+                              const ReconstructOptions& options, const CancelToken& cancel,
+                              ReconstructStats& stats) {
   std::vector<vec3> light = average_side(solver, points, leaves, back);
   const GatherOptions gather{options.light_rays, options.ray_share};
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
@@ -101,9 +104,11 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
         if (leaf == kNoElement) return;
         const vec3 n = back ? -point.normal : point.normal;
         RayCount count;
-        const Gathered gathered = gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
-                             hash(i, 77), count);
-        light[i] = gathered.irradiance * horizon_gain(dot(point.normal, points.face_normals[point.face]), gathered.seen);
+        const Gathered gathered =
+            gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
+                      hash(i, 77), count);
+        light[i] = gathered.irradiance *
+                   horizon_gain(dot(point.normal, points.face_normals[point.face]), gathered.seen);
         buried[i] = gathered.openness < kBuried ? 1 : 0;
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
@@ -125,8 +130,8 @@ std::vector<vec3> to_vertices(const std::vector<vec3>& light, const std::vector<
 
 }  // namespace
 
-Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
-                     ReconstructStats& stats) {
+Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options,
+                     const CancelToken& cancel, ReconstructStats& stats) {
   const ElementPool& pool = solver.pool();
   const SurfaceSet& set = pool.surfaces();
   Lighting lighting;
@@ -138,9 +143,10 @@ Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions&
     LitPrimitive lit = build_output_mesh(pool, part, points, point_of_vertex);
     for (int side = 0; side < (material.double_sided ? 2 : 1); ++side) {
       const std::vector<ElementId> leaves = pool.leaf_elements(part, side == 1);
-      const std::vector<vec3> light = options.method == Reconstruction::kAverage
-                                          ? average_side(solver, points, leaves, side == 1)
-                                          : gather_side(solver, points, leaves, side == 1, options, cancel, stats);
+      const std::vector<vec3> light =
+          options.method == Reconstruction::kAverage
+              ? average_side(solver, points, leaves, side == 1)
+              : gather_side(solver, points, leaves, side == 1, options, cancel, stats);
       (side == 0 ? lit.irradiance : lit.irradiance_back) = to_vertices(light, point_of_vertex);
     }
     lighting.primitives.push_back(std::move(lit));

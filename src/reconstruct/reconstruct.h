@@ -7,14 +7,18 @@
 namespace goldthread {
 
 enum class Reconstruction {
-  kAverage,  ///< leaf elements' irradiance vectors, turned to the vertex normal and averaged: fast, for snapshots
-  kGather,   ///< every link on the way to the root is evaluated again at the vertex (thesis 4.5.5, final gather)
+  kAverage,  ///< leaf elements' irradiance vectors, turned to the vertex normal and averaged: fast, for
+             ///< snapshots
+  kGather,   ///< every link on the way to the root is evaluated again at the vertex (thesis 4.5.5, final
+             ///< gather)
 };
 
 struct ReconstructOptions {
   Reconstruction method = Reconstruction::kGather;
-  uint32_t light_rays = 32;     ///< kGather: shadow rays for a link that brings all of a vertex's light; less pro rata
-  float ray_share = 0.01f;      ///< links that bring less than this share use the visibility that they were sampled with
+  uint32_t light_rays =
+      32;  ///< kGather: shadow rays for a link that brings all of a vertex's light; less pro rata
+  float ray_share =
+      0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
 };
 
 struct ReconstructStats {
@@ -23,7 +27,7 @@ struct ReconstructStats {
 };
 
 /// Light on every primitive that receives it. When cancelled, what is not yet gathered is averaged.
-Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
-                     ReconstructStats& stats);
+Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options,
+                     const CancelToken& cancel, ReconstructStats& stats);
 
 }  // namespace goldthread

@@ -11,7 +11,8 @@ float quality(const vec3& a, const vec3& b, const vec3& c) {
   return longest > 0 ? length(cross(b - a, c - a)) / longest : 0.0f;
 }
 
-// Swaps the diagonal of two triangles that share one when that raises the smaller quality. Returns whether any did.
+// Swaps the diagonal of two triangles that share one when that raises the smaller quality. Returns whether
+// any did.
 bool flip_once(std::span<const vec3> p, std::vector<UVec3>& triangles, size_t first) {
   bool flipped = false;
   for (size_t i = first; i < triangles.size(); ++i) {
@@ -47,14 +48,16 @@ void triangulate_face(std::span<const vec3> loop, std::vector<UVec3>& triangles)
     size_t best = 0;
     float most = -1;
     for (size_t i = 0; i < rest.size(); ++i) {
-      const uint32_t a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i], c = rest[(i + 1) % rest.size()];
+      const uint32_t a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i],
+                     c = rest[(i + 1) % rest.size()];
       const float q = quality(loop[a], loop[b], loop[c]);
       if (q > most) {
         most = q;
         best = i;
       }
     }
-    triangles.push_back({rest[(best + rest.size() - 1) % rest.size()], rest[best], rest[(best + 1) % rest.size()]});
+    triangles.push_back(
+        {rest[(best + rest.size() - 1) % rest.size()], rest[best], rest[(best + 1) % rest.size()]});
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
   }
   triangles.push_back({rest[0], rest[1], rest[2]});

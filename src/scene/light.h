@@ -11,12 +11,12 @@ enum class LightKind : uint8_t { kPoint, kSpot, kDirectional };
 struct Light {
   std::string name;
   LightKind kind = LightKind::kPoint;
-  vec3 intensity{0};       ///< colour * intensity: candela (point, spot) or lux (directional)
-  vec3 position{0};        ///< world, metres
-  vec3 direction{0, 0, -1};///< world, unit: where the light shines to
-  float inner_cone = 0;    ///< radians from the axis
+  vec3 intensity{0};         ///< colour * intensity: candela (point, spot) or lux (directional)
+  vec3 position{0};          ///< world, metres
+  vec3 direction{0, 0, -1};  ///< world, unit: where the light shines to
+  float inner_cone = 0;      ///< radians from the axis
   float outer_cone = 0.7853981634f;
-  float range = 0;         ///< metres, 0 for no limit
+  float range = 0;  ///< metres, 0 for no limit
 };
 
 /// Luminance arriving from everywhere beyond the scene, uniform over the whole sphere.

@@ -7,8 +7,8 @@
 
 namespace goldthread {
 
-/// Where a final vertex lies on its source primitive: triangle and barycentric weights of its corners 1 and 2.
-/// A corner of the source is exactly (0,0), (1,0) or (0,1).
+/// Where a final vertex lies on its source primitive: triangle and barycentric weights of its corners 1
+/// and 2. A corner of the source is exactly (0,0), (1,0) or (0,1).
 struct VertexOrigin {
   uint32_t triangle = 0;  ///< source triangle: Primitive::indices[3 * triangle ...]
   vec2 weights{0};
@@ -22,17 +22,18 @@ struct LitPrimitive {
   /// True: vertex i is the source's vertex i and the faces are the source's own; `origins`, `faces` and
   /// `face_parents` are empty. False: the mesh was refined, or split where light breaks at a crease.
   bool source_mesh = true;
-  std::vector<VertexOrigin> origins;    ///< per vertex
-  std::vector<UVec3> faces;             ///< wound as the source
-  std::vector<uint32_t> face_parents;   ///< source triangle of each face
+  std::vector<VertexOrigin> origins;   ///< per vertex
+  std::vector<UVec3> faces;            ///< wound as the source
+  std::vector<uint32_t> face_parents;  ///< source triangle of each face
 
-  std::vector<vec3> irradiance;         ///< lux, per vertex, arriving on the front
-  std::vector<vec3> irradiance_back;    ///< lux, per vertex, on the back; empty unless the material is double-sided
+  std::vector<vec3> irradiance;  ///< lux, per vertex, arriving on the front
+  std::vector<vec3>
+      irradiance_back;  ///< lux, per vertex, on the back; empty unless the material is double-sided
 };
 
 struct Lighting {
-  uint32_t revision = 0;                ///< grows with every snapshot
-  std::vector<LitPrimitive> primitives; ///< those that receive light, by instance, then primitive
+  uint32_t revision = 0;                 ///< grows with every snapshot
+  std::vector<LitPrimitive> primitives;  ///< those that receive light, by instance, then primitive
 };
 
 }  // namespace goldthread

@@ -11,8 +11,8 @@
 
 namespace goldthread {
 
-/// Builds the scene called `name` with about `triangles` triangles (0: its own number). Unknown names are an Error that
-/// lists the known ones.
+/// Builds the scene called `name` with about `triangles` triangles (0: its own number). Unknown names are an
+/// Error that lists the known ones.
 Result<Scene> build_procedural(std::string_view name, uint64_t triangles);
 
 /// The known names with a sentence each.

@@ -26,7 +26,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 std::string file_extension(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -81,7 +83,8 @@ class Bake {
     if (const Status status = check_options(); !status) return status.error();
     const int threads = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
     report_.threads = threads;
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<size_t>(threads));
     if (const Status status = load(); !status) return status.error();
     if (const Status status = preprocess(); !status) return status.error();
     if (const Status status = solve(); !status) return status.error();
@@ -105,12 +108,14 @@ class Bake {
     if (listener_.cancelled && listener_.cancelled()) cancelled_ = true;
     return cancelled_;
   }
-  void tell(const std::string& stage, double share, double rays_per_second = 0, double error = 0, double remaining = -1) {
+  void tell(const std::string& stage, double share, double rays_per_second = 0, double error = 0,
+            double remaining = -1) {
     if (listener_.on_progress)
       listener_.on_progress({stage, share, rays_per_second, error, since(start_), remaining});
   }
   double time_left() const {
-    return options_.time_limit ? *options_.time_limit - since(start_) : std::numeric_limits<double>::infinity();
+    return options_.time_limit ? *options_.time_limit - since(start_)
+                               : std::numeric_limits<double>::infinity();
   }
 
   const BakeOptions& options_;
@@ -132,8 +137,13 @@ Status Bake::check_options() const {
   if (options_.outputs.empty()) return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
   for (const std::string& file : options_.outputs) {
     const std::string extension = file_extension(file);
-    if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" && extension != ".exr")
-      return Error{ErrorCode::kUsage, "cannot tell the output's format", file, {}, "end it in .glb, .gltf, .gold, .png or .exr"};
+    if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" &&
+        extension != ".exr")
+      return Error{ErrorCode::kUsage,
+                   "cannot tell the output's format",
+                   file,
+                   {},
+                   "end it in .glb, .gltf, .gold, .png or .exr"};
     // Known before hours are spent on what cannot be kept.
     if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
   }
@@ -153,7 +163,8 @@ Status Bake::load() {
   std::erase(report_.warnings, std::string());
   report_.seconds.load = since(start_);
   if (scene_.triangle_count() == 0)
-    return Error{ErrorCode::kNothingToBake, "has no triangles", options_.input, {}, "give a file with a mesh in it"};
+    return Error{
+        ErrorCode::kNothingToBake, "has no triangles", options_.input, {}, "give a file with a mesh in it"};
   return Nothing{};
 }
 
@@ -164,18 +175,27 @@ Status Bake::preprocess() {
   report_.seconds.face_clusters = since(begin);
   for (const std::string& warning : describe_problems(surfaces_)) report_.warnings.push_back(warning);
   if (surfaces_.surfaces.empty())
-    return Error{ErrorCode::kNothingToBake, "no surface can receive light", options_.input, {},
+    return Error{ErrorCode::kNothingToBake,
+                 "no surface can receive light",
+                 options_.input,
+                 {},
                  "every triangle is degenerate or of an unlit material"};
   if (!has_light(surfaces_))
-    return Error{ErrorCode::kNothingToBake, "no light in the scene: nothing emits and there is no lamp", options_.input, {},
+    return Error{ErrorCode::kNothingToBake,
+                 "no light in the scene: nothing emits and there is no lamp",
+                 options_.input,
+                 {},
                  "add --sky 1000 or --sun 50000, or give a material an emission"};
-  if (stop_asked()) return Error{ErrorCode::kCancelled, "stopped before there was any light to keep", options_.input, {}, {}};
+  if (stop_asked())
+    return Error{ErrorCode::kCancelled, "stopped before there was any light to keep", options_.input, {}, {}};
   const auto bvh = Clock::now();
   {
     const WorldTriangles world = world_triangles(surfaces_);
     PassThrough pass;
-    if (!world.see_through.empty()) pass = [this](uint32_t t, vec2 w, const Ray& ray) { return passes(t, w, ray, surfaces_); };
-    caster_ = std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(pass));
+    if (!world.see_through.empty())
+      pass = [this](uint32_t t, vec2 w, const Ray& ray) { return passes(t, w, ray, surfaces_); };
+    caster_ =
+        std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(pass));
   }
   report_.seconds.ray_bvh = since(bvh);
   const auto volumes = Clock::now();
@@ -185,8 +205,11 @@ Status Bake::preprocess() {
   report_.seconds.preprocess = since(begin);
   report_.preprocess_bytes = memory_bytes(surfaces_) + solver_->memory_bytes();
   report_.ray_bvh_bytes = caster_->memory_bytes();
-  report_.scene = {surfaces_.triangles,        surfaces_.surfaces.size(), surfaces_.face_clusters,
-                   solver_->pool().volume_clusters(), scene_.lights.size() + (scene_.sky.present() ? 1 : 0) + count_emitters(surfaces_),
+  report_.scene = {surfaces_.triangles,
+                   surfaces_.surfaces.size(),
+                   surfaces_.face_clusters,
+                   solver_->pool().volume_clusters(),
+                   scene_.lights.size() + (scene_.sky.present() ? 1 : 0) + count_emitters(surfaces_),
                    surfaces_.area};
   return Nothing{};
 }
@@ -198,7 +221,7 @@ Status Bake::solve() {
   std::atomic<bool> full{false};
   session.watch = [&] {
     // The reconstruction still needs room of its own.
-    if (memory_limit > 0 && resident_memory() > memory_limit / 10 * 8) full = true;
+    if (memory_limit > 0 && resident_memory() > memory_limit / 10 * 6) full = true;
     return full.load();
   };
   session.start();
@@ -216,8 +239,8 @@ Status Bake::solve() {
       const SolveProgress now = session.progress();
       const double elapsed = since(begin);
       const double remaining = now.share > 0.02 ? elapsed * (1 - now.share) / now.share * 1.3 : -1;
-      tell("solve", 0.05 + 0.65 * now.share, static_cast<double>(now.rays) / std::max(1e-3, elapsed), now.error_estimate,
-           remaining);
+      tell("solve", 0.05 + 0.65 * now.share, static_cast<double>(now.rays) / std::max(1e-3, elapsed),
+           now.error_estimate, remaining);
     }
   }
   if (report_.seconds.first_image == 0 && session.snapshot()) report_.seconds.first_image = since(start_);
@@ -260,8 +283,8 @@ void Bake::finish_report() {
   report_.solver.elements = solver_->pool().count_by_kind();
   report_.solver.links = solver_->links().all().size();
   report_.solver.rays = stats.rays.rays;
-  report_.solver.ray_time_share =
-      std::min(1.0, static_cast<double>(stats.rays.nanoseconds) * 1e-9 / std::max(1e-9, report_.seconds.solve * report_.threads));
+  report_.solver.ray_time_share = std::min(1.0, static_cast<double>(stats.rays.nanoseconds) * 1e-9 /
+                                                    std::max(1e-9, report_.seconds.solve * report_.threads));
   report_.solver.iterations = stats.iterations;
   report_.solver.epsilon = stats.epsilon;
   report_.solver.error_estimate = stats.error_estimate;
@@ -284,7 +307,8 @@ Status Bake::write() {
   result_.warnings = report_.warnings;
   result_.summary = summary();
   if (!options_.report_file.empty())
-    if (const Status status = write_file_atomically(options_.report_file, as_bytes(result_.json)); !status) return status.error();
+    if (const Status status = write_file_atomically(options_.report_file, as_bytes(result_.json)); !status)
+      return status.error();
   tell("write", 1);
   return Nothing{};
 }
@@ -312,16 +336,20 @@ Status Bake::write_one(const std::string& file) {
   }
   SceneWriteOptions write_options;
   write_options.mode = options_.mode;
-  if (options_.mode == OutputMode::kUnlit) write_options.exposure = unlit_exposure(scene_, lighting_, static_cast<float>(options_.exposure));
+  if (options_.mode == OutputMode::kUnlit)
+    write_options.exposure = unlit_exposure(scene_, lighting_, static_cast<float>(options_.exposure));
   return write_lit_scene(file, scene_, lighting_, write_options);
 }
 
 std::string Bake::summary() const {
   char text[256];
-  std::snprintf(text, sizeof text, "%llu triangles, %llu links, %.1f Mrays, %.1f s (solve %.1f s); power residual %.2f%%",
-                static_cast<unsigned long long>(report_.scene.triangles), static_cast<unsigned long long>(report_.solver.links),
-                static_cast<double>(report_.solver.rays + report_.solver.reconstruct_rays) * 1e-6, report_.seconds.total,
-                report_.seconds.solve, 100 * report_.power.residual / std::max(1e-30, report_.power.emitted));
+  std::snprintf(text, sizeof text,
+                "%llu triangles, %llu links, %.1f Mrays, %.1f s (solve %.1f s); power residual %.2f%%",
+                static_cast<unsigned long long>(report_.scene.triangles),
+                static_cast<unsigned long long>(report_.solver.links),
+                static_cast<double>(report_.solver.rays + report_.solver.reconstruct_rays) * 1e-6,
+                report_.seconds.total, report_.seconds.solve,
+                100 * report_.power.residual / std::max(1e-30, report_.power.emitted));
   return text;
 }
 
@@ -332,7 +360,8 @@ Result<BakeResult> bake(const BakeOptions& options, const BakeListener& listener
     Bake job(options, listener);
     return job.run();
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::kLimit, "ran out of memory", options.input, {}, "try --quality draft or a smaller scene"};
+    return Error{
+        ErrorCode::kLimit, "ran out of memory", options.input, {}, "try --quality draft or a smaller scene"};
   }
 }
 

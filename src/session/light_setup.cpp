@@ -18,7 +18,8 @@ void add_requested_lights(Scene& scene, const BakeOptions& options) {
   sun.name = "sun";
   sun.kind = LightKind::kDirectional;
   sun.intensity = vec3(options.sun->illuminance);
-  sun.direction = -vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation), -std::cos(elevation) * std::cos(azimuth));
+  sun.direction = -vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                        -std::cos(elevation) * std::cos(azimuth));
   scene.lights.push_back(sun);
 }
 
@@ -39,12 +40,14 @@ bool has_light(const SurfaceSet& surfaces) {
 std::vector<std::string> describe_problems(const SurfaceSet& surfaces) {
   std::vector<std::string> lines;
   if (surfaces.skipped.degenerate > 0)
-    lines.push_back(fmt::format("{} degenerate triangles without area were skipped", surfaces.skipped.degenerate));
+    lines.push_back(
+        fmt::format("{} degenerate triangles without area were skipped", surfaces.skipped.degenerate));
   if (surfaces.skipped.not_finite > 0)
-    lines.push_back(fmt::format("{} triangles with corners that are not finite were skipped", surfaces.skipped.not_finite));
+    lines.push_back(fmt::format("{} triangles with corners that are not finite were skipped",
+                                surfaces.skipped.not_finite));
   if (surfaces.clamped_materials > 0)
-    lines.push_back(fmt::format("{} materials reflect more than {} and were clamped to that", surfaces.clamped_materials,
-                                kMaxReflectance));
+    lines.push_back(fmt::format("{} materials reflect more than {} and were clamped to that",
+                                surfaces.clamped_materials, kMaxReflectance));
   return lines;
 }
 
@@ -54,7 +57,8 @@ bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& s
   if (alpha >= 1) return false;
   if (alpha <= 0) return true;
   const uint32_t a = hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
-  const uint32_t b = hash(std::bit_cast<uint32_t>(ray.origin.x) ^ triangle, std::bit_cast<uint32_t>(ray.origin.z));
+  const uint32_t b =
+      hash(std::bit_cast<uint32_t>(ray.origin.x) ^ triangle, std::bit_cast<uint32_t>(ray.origin.z));
   return unit_float(hash(a, b)) >= alpha;
 }
 

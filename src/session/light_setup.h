@@ -24,11 +24,12 @@ std::string fix_scene_normals(Scene& scene);
 /// What was skipped or clamped, a line each.
 std::vector<std::string> describe_problems(const SurfaceSet& surfaces);
 
-/// Whether a ray goes through a triangle at a point: always where a mask has a hole, by chance where it is blended; the
-/// chance is a hash of the ray, so that it is the same every time.
+/// Whether a ray goes through a triangle at a point: always where a mask has a hole, by chance where it is
+/// blended; the chance is a hash of the ray, so that it is the same every time.
 bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces);
 
-/// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle grey.
+/// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
+/// grey.
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);
 
 /// Bytes of hierarchies and placed geometry.

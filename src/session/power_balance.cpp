@@ -19,8 +19,9 @@ struct Leaves {
   // The leaf at `share` of the total; `rest` is the position within it, 0..1.
   ElementId at(double share, float& rest) const {
     const double target = share * total();
-    const size_t i = std::min(ids.size() - 1, static_cast<size_t>(std::upper_bound(up_to.begin(), up_to.end(), target) -
-                                                                  up_to.begin()));
+    const size_t i =
+        std::min(ids.size() - 1,
+                 static_cast<size_t>(std::upper_bound(up_to.begin(), up_to.end(), target) - up_to.begin()));
     const double low = i > 0 ? up_to[i - 1] : 0;
     rest = static_cast<float>(std::clamp((target - low) / std::max(up_to[i] - low, 1e-300), 0.0, 0.999999));
     return ids[i];
@@ -53,11 +54,12 @@ Leaves collect(const ElementPool& pool, const Weight& weight) {
 vec3 cosine_direction(const vec3& n, float u, float v) {
   const float radius = std::sqrt(u), angle = 2 * kPi * v;
   const vec3 t = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y));
-  return radius * (std::cos(angle) * t + std::sin(angle) * cross(n, t)) + std::sqrt(std::max(0.0f, 1 - u)) * n;
+  return radius * (std::cos(angle) * t + std::sin(angle) * cross(n, t)) +
+         std::sqrt(std::max(0.0f, 1 - u)) * n;
 }
 
-// Triangles in whose plane, within their reach, others of the same part face the opposite way: plates without thickness are
-// modelled so, and a ray may meet either first.
+// Triangles in whose plane, within their reach, others of the same part face the opposite way: plates without
+// thickness are modelled so, and a ray may meet either first.
 std::vector<uint8_t> find_backed(const SurfaceSet& set) {
   struct Plane {
     std::array<int32_t, 4> key;
@@ -118,7 +120,8 @@ struct Counter {
     const Part& part = part_of_triangle(set, hit.triangle);
     const Material& material = set.scene->materials[part.material];
     if (material.unlit) return false;
-    return material.double_sided || backed[hit.triangle] != 0 || part.winding * dot(hit.normal, direction) < 0;
+    return material.double_sided || backed[hit.triangle] != 0 ||
+           part.winding * dot(hit.normal, direction) < 0;
   }
 
   // Averages body(leaf, point, index) over points drawn by the leaves' weights.
@@ -133,14 +136,17 @@ struct Counter {
           float rest = 0;
           const double jitter = static_cast<double>(unit_float(hash(static_cast<uint32_t>(i), seed)));
           const ElementId leaf = leaves.at((static_cast<double>(i) + jitter) / rays, rest);
-          const SurfacePoint x = pool().sample_at(leaf, rest, unit_float(hash(static_cast<uint32_t>(i), seed + 1)));
-          sum.fetch_add(static_cast<int64_t>(body(leaf, x, static_cast<uint32_t>(i)) * 1e6), std::memory_order_relaxed);
+          const SurfacePoint x =
+              pool().sample_at(leaf, rest, unit_float(hash(static_cast<uint32_t>(i), seed + 1)));
+          sum.fetch_add(static_cast<int64_t>(body(leaf, x, static_cast<uint32_t>(i)) * 1e6),
+                        std::memory_order_relaxed);
         },
         256);
     return static_cast<double>(sum.load()) / 1e6 / rays;
   }
 
-  // Where a ray from a surface point in a cosine direction ends: 0 on a lit side, 1 nowhere, 2 on an unlit back.
+  // Where a ray from a surface point in a cosine direction ends: 0 on a lit side, 1 nowhere, 2 on an unlit
+  // back.
   int end_of_ray(const SurfacePoint& x, uint32_t i) const {
     const UnitSquarePoint uv = r2_point(i, seed + 2);
     Ray ray;
@@ -207,7 +213,8 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
     own += area(e) * static_cast<double>(luminance(e.exitance));
     return area(e) * static_cast<double>(luminance(state.radiosity[id]));
   });
-  const Leaves by_area = collect(pool, [&](ElementId, const Element& e) { return area(e) * static_cast<double>(e.coverage); });
+  const Leaves by_area =
+      collect(pool, [&](ElementId, const Element& e) { return area(e) * static_cast<double>(e.coverage); });
 
   const double leaving = by_power.total();
   balance.escaped = leaving * counter.mean(by_power, [&](ElementId, const SurfacePoint& x, uint32_t i) {

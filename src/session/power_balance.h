@@ -4,9 +4,9 @@
 
 namespace goldthread {
 
-/// Luminous flux, lm. What surfaces emit and reflect is counted from the solution; what escapes to the sky, falls on unlit
-/// backs, or comes in from sky, sun and point lights is counted by rays. emitted = absorbed + escaped + residual, where the
-/// residual is the solver's error.
+/// Luminous flux, lm. What surfaces emit and reflect is counted from the solution; what escapes to the sky,
+/// falls on unlit backs, or comes in from sky, sun and point lights is counted by rays. emitted = absorbed +
+/// escaped + residual, where the residual is the solver's error.
 struct PowerBalance {
   double emitted = 0, absorbed = 0, escaped = 0, residual = 0;
 };

@@ -64,7 +64,8 @@ uint64_t resident_memory() {
   if (file == nullptr) return peak_memory();
   const int fields = std::fscanf(file, "%lu %lu", &total, &resident);
   std::fclose(file);
-  return fields == 2 ? static_cast<uint64_t>(resident) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : peak_memory();
+  return fields == 2 ? static_cast<uint64_t>(resident) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE))
+                     : peak_memory();
 }
 
 }  // namespace goldthread

@@ -15,11 +15,11 @@ struct BakeReport {
     double area_m2 = 0;
   } scene;
   struct {
-    double load = 0, preprocess = 0, face_clusters = 0, volume_clusters = 0, ray_bvh = 0, first_image = 0, solve = 0,
-           reconstruct = 0, represent = 0, write = 0, total = 0;
+    double load = 0, preprocess = 0, face_clusters = 0, volume_clusters = 0, ray_bvh = 0, first_image = 0,
+           solve = 0, reconstruct = 0, represent = 0, write = 0, total = 0;
   } seconds;
   uint64_t peak_memory_bytes = 0;
-  uint64_t preprocess_bytes = 0;   ///< hierarchies and placed geometry, without Embree
+  uint64_t preprocess_bytes = 0;  ///< hierarchies and placed geometry, without Embree
   uint64_t ray_bvh_bytes = 0;
   struct {
     std::array<uint64_t, 4> elements{};  ///< volume, face, patch, light

@@ -70,8 +70,8 @@ void SolveSession::breathe(bool picture_due) {
   if (picture_due || wanted_.exchange(false, std::memory_order_relaxed)) publish();
   std::unique_lock lock(mutex_);
   const SolveStats& stats = solver_.stats();
-  progress_ = {solver_.share_done(), stats.epsilon, stats.error_estimate, stats.rays.rays, solver_.links().all().size(),
-               solver_.pool().size()};
+  progress_ = {solver_.share_done(),         stats.epsilon,        stats.error_estimate, stats.rays.rays,
+               solver_.links().all().size(), solver_.pool().size()};
   // Woken now and then, because a cancel may come from where no lock can be taken.
   while (paused_ && !cancel_.cancelled()) changed_.wait_for(lock, std::chrono::milliseconds(50));
 }

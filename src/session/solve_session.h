@@ -15,7 +15,7 @@ namespace goldthread {
 
 /// What a running solve looks like from outside.
 struct SolveProgress {
-  double share = 0;           ///< 0..1
+  double share = 0;  ///< 0..1
   double epsilon = 0;
   double error_estimate = 0;
   uint64_t rays = 0;
@@ -32,14 +32,15 @@ class SolveSession {
   SolveSession& operator=(const SolveSession&) = delete;
 
   void start();
-  void pause();               ///< takes effect within a wave of refinement; returns at once
+  void pause();  ///< takes effect within a wave of refinement; returns at once
   void resume();
-  void cancel();              ///< the solver sweeps what it has and stops
+  void cancel();  ///< the solver sweeps what it has and stops
   /// Waits until the solve has ended or `milliseconds` have passed; returns whether it has ended.
   bool wait(int milliseconds);
 
   SolveProgress progress() const;
-  /// The newest picture of the light, immutable; null before the first. Never blocks for longer than a pointer's copy.
+  /// The newest picture of the light, immutable; null before the first. Never blocks for longer than a
+  /// pointer's copy.
   std::shared_ptr<const Lighting> snapshot() const;
   /// Asks for a newer one; it is published between two waves of refinement. The first is published unasked.
   void request_snapshot() { wanted_.store(true, std::memory_order_relaxed); }

@@ -20,10 +20,14 @@ struct FilterData {
 
 #if GOLDTHREAD_EMBREE >= 4
 using RayContext = RTCRayQueryContext;
-void init_context(RayContext* context) { rtcInitRayQueryContext(context); }
+void init_context(RayContext* context) {
+  rtcInitRayQueryContext(context);
+}
 #else
 using RayContext = RTCIntersectContext;
-void init_context(RayContext* context) { rtcInitIntersectContext(context); }
+void init_context(RayContext* context) {
+  rtcInitIntersectContext(context);
+}
 #endif
 
 // Embree asks this for every candidate hit on a see-through triangle; clearing `valid` lets the ray go on.
@@ -110,8 +114,8 @@ struct RayCaster::State {
     auto* vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), positions.size()));
     std::copy(positions.begin(), positions.end(), vertices);
-    auto* indices = static_cast<UVec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                RTC_FORMAT_UINT3, sizeof(UVec3), count));
+    auto* indices = static_cast<UVec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(UVec3), count));
     for (size_t i = 0; i < count; ++i) indices[i] = triangles[subset != nullptr ? (*subset)[i] : i];
     if (id == 1) {
       rtcSetGeometryUserData(geometry, &see_through);

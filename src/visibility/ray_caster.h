@@ -21,21 +21,21 @@ struct Hit {
   static constexpr uint32_t kMiss = 0xffffffffu;
   uint32_t triangle = kMiss;  ///< index in the triangles given
   float distance = 0;
-  vec2 weights{0};            ///< barycentric weights of corners 1 and 2
-  vec3 normal{0};             ///< geometric, not unit, by the winding
+  vec2 weights{0};  ///< barycentric weights of corners 1 and 2
+  vec3 normal{0};   ///< geometric, not unit, by the winding
 
   bool missed() const { return triangle == kMiss; }
 };
 
-/// Decides whether a ray passes through `triangle` at barycentric `weights` (alpha mask and blend). Called from many
-/// threads at once; must be a pure function of its arguments.
+/// Decides whether a ray passes through `triangle` at barycentric `weights` (alpha mask and blend). Called
+/// from many threads at once; must be a pure function of its arguments.
 using PassThrough = std::function<bool(uint32_t triangle, vec2 weights, const Ray& ray)>;
 
 /// A static soup of world-space triangles. Thread safe once built.
 class RayCaster {
  public:
-  /// `see_through` marks, per triangle, those for which `pass` is asked; both may be empty. The arrays are copied into
-  /// Embree's own buffers and may be dropped afterwards.
+  /// `see_through` marks, per triangle, those for which `pass` is asked; both may be empty. The arrays are
+  /// copied into Embree's own buffers and may be dropped afterwards.
   RayCaster(std::span<const vec3> positions, std::span<const UVec3> triangles,
             std::span<const uint8_t> see_through = {}, PassThrough pass = {});
   ~RayCaster();

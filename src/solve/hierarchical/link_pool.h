@@ -13,7 +13,8 @@ class LinkPool {
   std::vector<Link>& all() { return links_; }
   const std::vector<Link>& all() const { return links_; }
 
-  /// Drops dead links and orders the rest by receiver, keeping the order within one. `elements` is the pool's size.
+  /// Drops dead links and orders the rest by receiver, keeping the order within one. `elements` is the pool's
+  /// size.
   void sort(size_t elements);
 
   /// Links into a receiver. Valid after `sort`, until links change.
@@ -21,7 +22,9 @@ class LinkPool {
     return {links_.data() + first_[receiver], links_.data() + first_[receiver + 1]};
   }
 
-  uint64_t memory_bytes() const { return links_.capacity() * sizeof(Link) + first_.capacity() * sizeof(uint64_t); }
+  uint64_t memory_bytes() const {
+    return links_.capacity() * sizeof(Link) + first_.capacity() * sizeof(uint64_t);
+  }
 
  private:
   std::vector<Link> links_;

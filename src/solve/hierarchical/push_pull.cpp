@@ -39,13 +39,14 @@ constexpr float kBuried = 0.02f;
 // Irradiance vectors by octant of the direction they come from; a column a colour channel.
 struct Octants {
   std::array<mat3, 8> sum{};
-  vec3 ambient{0};  // what falls on every normal alike
+  vec3 ambient{0};            // what falls on every normal alike
   float faced = 0, seen = 0;  // form factors, without and with occlusion
   uint32_t used = 0;
 
   void add(const vec3& transfer, float even, const vec3& radiosity) {
     ambient += even * radiosity;
-    const uint32_t octant = (transfer.x < 0 ? 1u : 0u) | (transfer.y < 0 ? 2u : 0u) | (transfer.z < 0 ? 4u : 0u);
+    const uint32_t octant =
+        (transfer.x < 0 ? 1u : 0u) | (transfer.y < 0 ? 2u : 0u) | (transfer.z < 0 ? 4u : 0u);
     if ((used >> octant & 1) == 0) sum[octant] = mat3(0);
     used |= 1u << octant;
     sum[octant][0] += transfer * radiosity.x;
@@ -53,7 +54,8 @@ struct Octants {
     sum[octant][2] += transfer * radiosity.z;
   }
 
-  // Irradiance on a plane of unit normal `n`, each octant clipped by it; a shorter `n` stands for a bundle of normals.
+  // Irradiance on a plane of unit normal `n`, each octant clipped by it; a shorter `n` stands for a bundle of
+  // normals.
   vec3 on(const vec3& n) const {
     vec3 e = ambient;
     for (uint32_t o = 0; o < 8; ++o)
@@ -72,7 +74,8 @@ struct Octants {
   }
 };
 
-// What flat elements get from links above them: a value at the element's centre and its gradient, a column a channel.
+// What flat elements get from links above them: a value at the element's centre and its gradient, a column a
+// channel.
 struct Field {
   vec3 at_centre{0};
   mat3 gradient{0};
@@ -88,7 +91,7 @@ struct Sweep {
   const ElementPool& pool;
   const LinkPool& links;
   RadiosityState& state;
-  float most_seen;  // what the form factors of a leaf may add up to
+  float most_seen;               // what the form factors of a leaf may add up to
   const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
@@ -146,11 +149,13 @@ struct Sweep {
     return change;
   }
 
-  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct) const {
+  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all,
+             const vec3& direct) const {
     vec3 irradiance = direct;
     if (e.cone_cosine < 0.95f) {
       for (uint32_t i = 0; i < kStoredSamples; ++i)
-        irradiance += inherited.on(pool.stored_sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
+        irradiance +=
+            inherited.on(pool.stored_sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
     } else {
       irradiance += inherited.on(e.summed_normal / std::max(e.area, 1e-30f));
     }
@@ -166,7 +171,8 @@ struct Sweep {
   }
 
   float settle(ElementId id, const Element& e, const vec3& gathered, float faced, float seen) const {
-    // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let light grow.
+    // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let
+    // light grow.
     const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(seen, 1e-20f));
     const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
@@ -188,9 +194,11 @@ struct Sweep {
     state.openness[id] = open;
     state.shown[id] = open_share * state.shown[a] + (1 - open_share) * state.shown[b];
     // What is all but buried has no say in how even the rest is.
-    const bool a_counts = state.openness[a] > kBuried * pool[a].area, b_counts = state.openness[b] > kBuried * pool[b].area;
+    const bool a_counts = state.openness[a] > kBuried * pool[a].area,
+               b_counts = state.openness[b] > kBuried * pool[b].area;
     state.low[id] = a_counts != b_counts ? state.low[a_counts ? a : b] : std::min(state.low[a], state.low[b]);
-    state.high[id] = a_counts != b_counts ? state.high[a_counts ? a : b] : std::max(state.high[a], state.high[b]);
+    state.high[id] =
+        a_counts != b_counts ? state.high[a_counts ? a : b] : std::max(state.high[a], state.high[b]);
   }
 };
 
@@ -203,7 +211,8 @@ glm::dvec3 landing(const ElementPool& pool, const RadiosityState& state, Element
 
 }  // namespace
 
-double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state, float most_seen) {
+double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state,
+                        float most_seen) {
   if (pool.root() == kNoElement) return 0;
   const std::vector<vec3> old = state.shown;
   const Sweep sweep{pool, links, state, most_seen, old};

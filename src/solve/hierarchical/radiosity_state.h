@@ -9,20 +9,25 @@ namespace goldthread {
 
 /// Arrays over elements. Pools grow; `grow_to` gives new elements what their parents know.
 struct RadiosityState {
-  std::vector<vec3> radiosity;    ///< b, lm/m^2, area mean (equation 4.17); for lights as Element::exitance
-  std::vector<vec3> irradiance;   ///< lux, area mean
-  /// b as others see it: the mean weighted by how open each leaf lies. A floor is dark where a box stands on it, and just
-  /// there nobody sees it; with the plain mean, the links' visibility would take that dark away a second time.
+  std::vector<vec3> radiosity;   ///< b, lm/m^2, area mean (equation 4.17); for lights as Element::exitance
+  std::vector<vec3> irradiance;  ///< lux, area mean
+  /// b as others see it: the mean weighted by how open each leaf lies. A floor is dark where a box stands on
+  /// it, and just there nobody sees it; with the plain mean, the links' visibility would take that dark away
+  /// a second time.
   std::vector<vec3> shown;
-  std::vector<float> openness;    ///< m^2: area times the share of what a leaf faces that it also sees
-  std::vector<float> low, high;   ///< least and largest radiosity (largest channel) among the open leaves below
-  std::vector<mat3> vector;       ///< of leaves, a column a channel: irradiance vectors (equation 4.13); gradients on flat ones
-  std::vector<vec3> ambient;      ///< of leaves: irradiance that every normal gets besides
+  std::vector<float> openness;  ///< m^2: area times the share of what a leaf faces that it also sees
+  std::vector<float> low,
+      high;  ///< least and largest radiosity (largest channel) among the open leaves below
+  std::vector<mat3>
+      vector;  ///< of leaves, a column a channel: irradiance vectors (equation 4.13); gradients on flat ones
+  std::vector<vec3> ambient;  ///< of leaves: irradiance that every normal gets besides
 
   void grow_to(const ElementPool& pool);
 };
 
 /// The channel that counts in error estimates.
-inline float largest(const vec3& c) { return std::max(c.x, std::max(c.y, c.z)); }
+inline float largest(const vec3& c) {
+  return std::max(c.x, std::max(c.y, c.z));
+}
 
 }  // namespace goldthread

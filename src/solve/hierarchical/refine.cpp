@@ -10,7 +10,9 @@ namespace {
 
 enum class Decision : uint8_t { kKeep, kReceiver, kSource, kBoth };
 
-bool is_light(ElementKind kind) { return kind == ElementKind::kPoint || kind == ElementKind::kSun; }
+bool is_light(ElementKind kind) {
+  return kind == ElementKind::kPoint || kind == ElementKind::kSun;
+}
 
 // Share of what could pass between two touching elements that counts as error.
 constexpr double kNearError = 0.02;
@@ -35,10 +37,12 @@ double likely_factor(const Element& r, const Element& s, double sampled) {
 }
 
 bool divisible(const Element& e) {
-  return e.first_child != kNoElement || (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
+  return e.first_child != kNoElement ||
+         (!e.indivisible && !is_light(e.kind) && e.kind != ElementKind::kVolume);
 }
 
-// Receivers above the triangle may always be opened; below, cuts make new geometry and stop at the least area.
+// Receivers above the triangle may always be opened; below, cuts make new geometry and stop at the least
+// area.
 bool may_open_receiver(const Element& e, float least_area) {
   if (!divisible(e)) return false;
   if (e.kind == ElementKind::kVolume || e.first_child != kNoElement) return true;
@@ -49,29 +53,35 @@ bool may_open_source(const Element& e, float least_area) {
   return may_open_receiver(e, e.kind == ElementKind::kSky ? 0.0f : least_area);
 }
 
-Decision decide(const ElementPool& pool, const RadiosityState& state, const Link& link, const RefineOptions& options) {
+Decision decide(const ElementPool& pool, const RadiosityState& state, const Link& link,
+                const RefineOptions& options) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
   const LinkError error = estimate_error(pool, state, link);
   if (error.weighed() <= options.power_error) return Decision::kKeep;
-  const bool receiver = may_open_receiver(r, options.least_area), source = may_open_source(s, options.least_area);
+  const bool receiver = may_open_receiver(r, options.least_area),
+             source = may_open_source(s, options.least_area);
   if (self) return receiver ? Decision::kBoth : Decision::kKeep;
   if (!receiver && !source) return Decision::kKeep;
-  // A box knows too little of what is in it: open the larger of two that are still boxes, and boxes before the rest.
+  // A box knows too little of what is in it: open the larger of two that are still boxes, and boxes before
+  // the rest.
   const bool r_box = r.kind == ElementKind::kVolume, s_box = s.kind == ElementKind::kVolume;
   if (r_box != s_box) return r_box ? Decision::kReceiver : Decision::kSource;
   if (r_box) return r.radius >= s.radius ? Decision::kReceiver : Decision::kSource;
   const double from_source = error.source * error.source_weight;
   if (error.receiver >= from_source)
-    return receiver ? Decision::kReceiver : (from_source > options.power_error ? Decision::kSource : Decision::kKeep);
-  return source ? Decision::kSource : (error.receiver > options.power_error ? Decision::kReceiver : Decision::kKeep);
+    return receiver ? Decision::kReceiver
+                    : (from_source > options.power_error ? Decision::kSource : Decision::kKeep);
+  return source ? Decision::kSource
+                : (error.receiver > options.power_error ? Decision::kReceiver : Decision::kKeep);
 }
 
 struct Child {
   ElementId receiver, source;
 };
 
-// How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may differ.
+// How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may
+// differ.
 void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& points, uint32_t& rays) {
   const Element &r = pool[child.receiver], &s = pool[child.source];
   points = r.kind <= ElementKind::kCluster || is_light(s.kind) ? 8 : 4;
@@ -112,22 +122,26 @@ void split_sources(const ElementPool& pool, const RadiosityState& state, std::ve
         Link& link = links[i];
         const Element& s = pool[link.source];
         if (!link.alive || link.front_share >= 0 || s.first_child == kNoElement || link.mean <= 0) return;
-        if (s.kind == ElementKind::kVolume || s.kind == ElementKind::kSky || link.receiver == link.source) return;
+        if (s.kind == ElementKind::kVolume || s.kind == ElementKind::kSky || link.receiver == link.source)
+          return;
         const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-        const double area = static_cast<double>(std::max(pool[link.receiver].area, 0.01f * pool[pool.root()].area));
-        if (range * static_cast<double>(link.mean) * area > 0.05 * options.power_error) split_source(pool, link);
+        const double area =
+            static_cast<double>(std::max(pool[link.receiver].area, 0.01f * pool[pool.root()].area));
+        if (range * static_cast<double>(link.mean) * area > 0.05 * options.power_error)
+          split_source(pool, link);
       },
       64);
 }
 
-// Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes kKeep: its
-// link comes up again in the next wave with the other side.
+// Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes
+// kKeep: its link comes up again in the next wave with the other side.
 void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
                    std::vector<Decision>& decisions, RadiosityState& state) {
   std::vector<ElementId> wanted;
   for (size_t i = 0; i < active.size(); ++i) {
     const Link& link = links[active[i]];
-    if (decisions[i] == Decision::kReceiver || decisions[i] == Decision::kBoth) wanted.push_back(link.receiver);
+    if (decisions[i] == Decision::kReceiver || decisions[i] == Decision::kBoth)
+      wanted.push_back(link.receiver);
     if (decisions[i] == Decision::kSource) wanted.push_back(link.source);
   }
   std::erase_if(wanted, [&](ElementId id) { return pool[id].first_child != kNoElement; });
@@ -148,32 +162,38 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const auto unoccluded = static_cast<double>(link.unoccluded);
   if (r.kind == ElementKind::kVolume || s.kind == ElementKind::kVolume || link.receiver == link.source) {
     // Boxes are guesses: all that they could bring counts as error; so does what a cluster sends to itself.
-    const double guess = s.kind == ElementKind::kVolume && link.receiver != link.source
-                             ? std::max(unoccluded, static_cast<double>(s.area) * 0.25 /
-                                                        (3.14 * std::max(1e-30, static_cast<double>(dot(s.centre - r.centre, s.centre - r.centre)))))
-                             : std::max(unoccluded, 0.25);
+    const double guess =
+        s.kind == ElementKind::kVolume && link.receiver != link.source
+            ? std::max(unoccluded,
+                       static_cast<double>(s.area) * 0.25 /
+                           (3.14 * std::max(1e-30, static_cast<double>(
+                                                       dot(s.centre - r.centre, s.centre - r.centre)))))
+            : std::max(unoccluded, 0.25);
     error.receiver = b * std::min(guess, is_light(s.kind) ? 1e30 : 1.0) * area;
     return error;
   }
-  // Where two elements nearly touch, most of what passes between them passes where they do, and samples elsewhere see
-  // neither it nor each other's doubts: a link kept because its samples happened to be small would lose light.
+  // Where two elements nearly touch, most of what passes between them passes where they do, and samples
+  // elsewhere see neither it nor each other's doubts: a link kept because its samples happened to be small
+  // would lose light.
   const float reach = r.radius + s.radius;
   const vec3 apart = s.centre - r.centre;
   if (is_surface(s.kind) && dot(apart, apart) < reach * reach)
     error.receiver += kNearError * b * static_cast<double>(std::min(r.area, s.area));
-  // A receiver that turns many ways: few samples may all look away, and such links would be kept just because of that.
+  // A receiver that turns many ways: few samples may all look away, and such links would be kept just because
+  // of that.
   if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(r, s, unoccluded);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
-  const double missed = unoccluded * (0.25 / (link.rays + 2.0));
+  const double missed = unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (1.0 * static_cast<double>(link.spread) + missed);
   double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   if (link.front_share >= 0) {
     const ElementId c = s.first_child;
-    range = 0.5 * static_cast<double>(std::max(state.high[c] - state.low[c], state.high[c + 1] - state.low[c + 1]));
+    range = 0.5 *
+            static_cast<double>(std::max(state.high[c] - state.low[c], state.high[c + 1] - state.low[c + 1]));
   }
-  // Light is brighter where it comes nearer, so a source taken as even errs to one side for every receiver: small
-  // receivers do not make that error small, as they do random ones.
+  // Light is brighter where it comes nearer, so a source taken as even errs to one side for every receiver:
+  // small receivers do not make that error small, as they do random ones.
   const double least = kSourceShare * static_cast<double>(pool[pool.root()].area);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;
   error.source_weight = std::max(1.0, least / std::max(area, 1e-300));
@@ -222,10 +242,13 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
           uint32_t points = 0, per_point = 0;
           sampling_effort(pool, children[i], points, per_point);
           RayCount cast;
-          if (children[i].receiver == children[i].source && pool[children[i].receiver].kind == ElementKind::kVolume) {
-            all[first + i].receiver = all[first + i].source = children[i].receiver;  // always opened: no samples needed
+          if (children[i].receiver == children[i].source &&
+              pool[children[i].receiver].kind == ElementKind::kVolume) {
+            all[first + i].receiver = all[first + i].source =
+                children[i].receiver;  // always opened: no samples needed
           } else {
-            all[first + i] = make_link(pool, visibility, children[i].receiver, children[i].source, points, per_point, cast);
+            all[first + i] = make_link(pool, visibility, children[i].receiver, children[i].source, points,
+                                       per_point, cast);
           }
           rays.fetch_add(cast.rays, std::memory_order_relaxed);
           nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);
@@ -233,8 +256,8 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
         16);
     for (size_t i = 0; i < children.size(); ++i) {
       Link& link = all[first + i];
-      const bool box = pool[link.receiver].kind == ElementKind::kVolume || pool[link.source].kind == ElementKind::kVolume ||
-                       link.receiver == link.source;
+      const bool box = pool[link.receiver].kind == ElementKind::kVolume ||
+                       pool[link.source].kind == ElementKind::kVolume || link.receiver == link.source;
       if (link.unoccluded <= 0 && !box && pool[link.receiver].flat) {
         link.alive = false;  // they do not face each other
       } else {
@@ -250,8 +273,8 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   return counters;
 }
 
-void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links, const CancelToken& cancel,
-              RayCount& total_rays) {
+void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
+              const CancelToken& cancel, RayCount& total_rays) {
   std::vector<Link>& all = links.all();
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(

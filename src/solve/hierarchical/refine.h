@@ -9,37 +9,38 @@
 namespace goldthread {
 
 struct RefineOptions {
-  double power_error = 0;         ///< lm: links whose estimated error of received power is larger are refined
-  float least_area = 0;           ///< m^2: receivers are not cut below this
-  uint64_t most_links = 0;        ///< stop refining beyond; 0 for no limit
+  double power_error = 0;   ///< lm: links whose estimated error of received power is larger are refined
+  float least_area = 0;     ///< m^2: receivers are not cut below this
+  uint64_t most_links = 0;  ///< stop refining beyond; 0 for no limit
 };
 
 struct RefineCounters {
   uint64_t links_refined = 0;
-  bool limited = false;           ///< most_links was reached
+  bool limited = false;  ///< most_links was reached
 };
 
-/// Estimated error of the power that a link brings, lm, by what it comes from (BFA-weighted L1, thesis 4.5.3, with terms
-/// for what sampling may have missed).
+/// Estimated error of the power that a link brings, lm, by what it comes from (BFA-weighted L1, thesis 4.5.3,
+/// with terms for what sampling may have missed).
 struct LinkError {
   double receiver = 0;  ///< transfer or visibility varies over the receiver
   double source = 0;    ///< radiosity varies over the source
-  double source_weight = 1;  ///< by how much the source's part counts more when deciding, since it errs to one side
+  double source_weight =
+      1;  ///< by how much the source's part counts more when deciding, since it errs to one side
   double total() const { return receiver + source; }
   double weighed() const { return receiver + source * source_weight; }
 };
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 
-/// Refines breadth first until no link exceeds the bound. New elements are made as they are needed. Each wave of links is
-/// decided and sampled in parallel and laid out in a fixed order, so that the result does not depend on the threads. Rays
-/// are added to `rays` wave by wave; `between_waves` may be empty.
+/// Refines breadth first until no link exceeds the bound. New elements are made as they are needed. Each wave
+/// of links is decided and sampled in parallel and laid out in a fixed order, so that the result does not
+/// depend on the threads. Rays are added to `rays` wave by wave; `between_waves` may be empty.
 RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
                       const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
                       const std::function<void()>& between_waves);
 
 /// Measures all links anew (resample_link), once no more will be refined. Rays are added to `rays`.
-void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links, const CancelToken& cancel,
-              RayCount& rays);
+void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
+              const CancelToken& cancel, RayCount& rays);
 
 /// The sum of the estimated errors over all links, lm.
 double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links);

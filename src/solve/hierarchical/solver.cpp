@@ -6,7 +6,8 @@
 
 namespace goldthread {
 
-HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster, const SolveOptions& options)
+HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster,
+                                       const SolveOptions& options)
     : options_(options), pool_(surfaces), bound_(options.first_error) {
   visibility_.caster = &caster;
   Box box;
@@ -30,20 +31,25 @@ void HierarchicalSolver::make_first_links() {
   Link self;
   self.receiver = self.source = root;
   all.push_back(self);
-  for (const ElementId light : pool_.lights()) all.push_back(make_link(pool_, visibility_, root, light, 8, 2, stats_.rays));
+  for (const ElementId light : pool_.lights())
+    all.push_back(make_link(pool_, visibility_, root, light, 8, 2, stats_.rays));
   links_.sort(pool_.size());
 }
 
-double HierarchicalSolver::first_power() const { return static_cast<double>(largest(emitted_power(pool_))); }
+double HierarchicalSolver::first_power() const {
+  return static_cast<double>(largest(emitted_power(pool_)));
+}
 
 bool HierarchicalSolver::step(const CancelToken& cancel) {
   if (pool_.root() == kNoElement || stats_.converged) return false;
   const double landing = static_cast<double>(largest(landing_power(pool_, state_)));
   RefineOptions refine_options;
   refine_options.power_error = bound_ * (stats_.iterations == 0 ? first_power() : landing);
-  refine_options.least_area = static_cast<float>(options_.least_area * static_cast<double>(pool_[pool_.root()].area));
+  refine_options.least_area =
+      static_cast<float>(options_.least_area * static_cast<double>(pool_[pool_.root()].area));
   refine_options.most_links = options_.most_links;
-  const RefineCounters counters = refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
+  const RefineCounters counters =
+      refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
   if (last) resample(pool_, visibility_, links_, cancel, stats_.rays);
@@ -57,8 +63,8 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
 }
 
 void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken& cancel) {
-  // Single leaves may overstate what they see, up and down about evenly. Where bright walls face each other across a gap and
-  // all do, light would grow for ever; then no leaf is let see more than there is.
+  // Single leaves may overstate what they see, up and down about evenly. Where bright walls face each other
+  // across a gap and all do, light would grow for ever; then no leaf is let see more than there is.
   float most_seen = 1.25f;
   double before = std::numeric_limits<double>::max();
   for (uint32_t i = 0; i < most; ++i) {
@@ -81,7 +87,8 @@ double HierarchicalSolver::share_done() const {
   if (stats_.converged) return 1;
   // Work grows about as the inverse of the bound's root.
   const double first = std::sqrt(options_.first_error), last = std::sqrt(options_.last_error);
-  const double now = std::sqrt(std::max(stats_.epsilon > 0 ? stats_.epsilon : options_.first_error, options_.last_error));
+  const double now =
+      std::sqrt(std::max(stats_.epsilon > 0 ? stats_.epsilon : options_.first_error, options_.last_error));
   return std::clamp((1 / now - 1 / first) / std::max(1e-12, 1 / last - 1 / first), 0.0, 1.0);
 }
 
@@ -109,7 +116,8 @@ vec3 emitted_power(const ElementPool& pool) {
       power += e.exitance * (d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y);
     } else {
       const Light& light = pool.light(id);
-      const float solid_angle = light.kind == LightKind::kPoint ? 4 * kPi : 2 * kPi * (1 - std::cos(light.outer_cone));
+      const float solid_angle =
+          light.kind == LightKind::kPoint ? 4 * kPi : 2 * kPi * (1 - std::cos(light.outer_cone));
       power += e.exitance * solid_angle;
     }
   }

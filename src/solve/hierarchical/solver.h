@@ -13,22 +13,24 @@
 namespace goldthread {
 
 struct SolveOptions {
-  double first_error = 1e-2;   ///< bound on a link's error in the first step, as a share of all light that lands
+  double first_error =
+      1e-2;  ///< bound on a link's error in the first step, as a share of all light that lands
   double last_error = 1e-5;    ///< the same in the last step
   double error_ratio = 0.25;   ///< each step's bound over the one before
   double least_area = 2.5e-5;  ///< receivers are not cut below this share of the scene's area
-  double settled = 1e-4;       ///< iterate until a sweep changes reflected power by less than this share of landing light
-  uint64_t most_links = 0;     ///< 0: no limit
+  double settled =
+      1e-4;  ///< iterate until a sweep changes reflected power by less than this share of landing light
+  uint64_t most_links = 0;  ///< 0: no limit
 };
 
 /// What a solve has cost and reached.
 struct SolveStats {
   RayCount rays;
-  uint32_t iterations = 0;        ///< gather and push-pull sweeps
-  double epsilon = 0;             ///< the last finished step's bound, as a share of landing light
-  double error_estimate = 0;      ///< root of summed squares of link errors over landing light
-  bool converged = false;         ///< the last step was finished and settled
-  bool limited = false;           ///< most_links stopped refinement
+  uint32_t iterations = 0;    ///< gather and push-pull sweeps
+  double epsilon = 0;         ///< the last finished step's bound, as a share of landing light
+  double error_estimate = 0;  ///< root of summed squares of link errors over landing light
+  bool converged = false;     ///< the last step was finished and settled
+  bool limited = false;       ///< most_links stopped refinement
 };
 
 /// Solves one scene. Not thread safe: one thread calls `step`; others may read between calls only.
@@ -37,8 +39,8 @@ class HierarchicalSolver {
   /// Both are borrowed and must outlive the solver.
   HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster, const SolveOptions& options);
 
-  /// One error bound: refine to it, then sweep. Returns false when there is nothing left to do. When cancelled midway, the
-  /// links made so far are swept once, so that the state is always a solution.
+  /// One error bound: refine to it, then sweep. Returns false when there is nothing left to do. When
+  /// cancelled midway, the links made so far are swept once, so that the state is always a solution.
   bool step(const CancelToken& cancel);
 
   /// 0..1 by bounds done.
@@ -51,7 +53,8 @@ class HierarchicalSolver {
   const SolveStats& stats() const { return stats_; }
   uint64_t memory_bytes() const;
 
-  /// Called on the stepping thread between waves of refinement, when elements and their light (not links) may be read.
+  /// Called on the stepping thread between waves of refinement, when elements and their light (not links) may
+  /// be read.
   std::function<void()> between_waves;
 
  private:

@@ -14,8 +14,9 @@ constexpr float kTolerance = 6e-4f;
 // Squared distance over squared radius below which a source is sampled by solid angle instead of by area.
 constexpr float kNearSource = 6;
 
-// Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre `distance_squared` away,
-// may be treated as a point: the error of that falls as the square of size over distance.
+// Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre
+// `distance_squared` away, may be treated as a point: the error of that falls as the square of size over
+// distance.
 bool small_enough(float factor, float radius, float distance_squared) {
   const float ratio = radius * radius / std::max(distance_squared, 1e-30f);
   return ratio < 0.25f && factor * ratio < kTolerance;
@@ -27,11 +28,13 @@ vec3 dipole(const vec3& to_source, float distance_squared, const vec3& summed_no
   return to_source * (power / (kPi * distance_squared * distance_squared));
 }
 
-// The dipole of a flat piece with its second-order term. Moving over the piece's plane, K = (n.d)(s.d)/d^4 has mean
+// The dipole of a flat piece with its second-order term. Moving over the piece's plane, K = (n.d)(s.d)/d^4
+// has mean
 //   K (1 + rho^2/d^2 (1 - 3 cos^2 + (n.s)(s.d)/(n.d)))
-// where rho^2 is twice the sum of the piece's two variances (rho is the radius, for a disc), s its unit normal turned to
-// the receiver and cos that of s and d: half the variance times the in-plane Laplacian of K. On the axis of a disc that is
-// the start of the exact rho^2/(rho^2 + d^2); without it near pieces bring too much.
+// where rho^2 is twice the sum of the piece's two variances (rho is the radius, for a disc), s its unit
+// normal turned to the receiver and cos that of s and d: half the variance times the in-plane Laplacian of K.
+// On the axis of a disc that is the start of the exact rho^2/(rho^2 + d^2); without it near pieces bring too
+// much.
 vec3 flat_dipole(const vec3& d, float squared, const vec3& summed_normal, const vec3& n, float rho_squared) {
   const float at_receiver = dot(d, n), power = -dot(d, summed_normal);
   if (at_receiver <= 0 || power <= 0) return vec3(0);
@@ -43,17 +46,18 @@ vec3 flat_dipole(const vec3& d, float squared, const vec3& summed_normal, const 
   return d * (factor * power / (kPi * squared * squared));
 }
 
-// Whether x is before the plane through `corner`, by more than rounding can make of a point on it: seen edge-on, a polygon
-// has no sides, and one that x lies on would seem to fill the sky.
+// Whether x is before the plane through `corner`, by more than rounding can make of a point on it: seen
+// edge-on, a polygon has no sides, and one that x lies on would seem to fill the sky.
 bool in_front(const vec3& x, const vec3& corner, const vec3& area_vector) {
   const vec3 most = glm::max(glm::abs(x), glm::abs(corner));
   const float rounding = 5e-7f * std::max(most.x, std::max(most.y, most.z));
   return dot(x - corner, area_vector) > rounding * length(area_vector);
 }
 
-// A far piece that turns both faces and backs to x: a bolt, a chair's leg. Half of the sum of |n.d| and of -n.d over its
-// triangles is the projected area that faces x; the second is S's, the first is S's own besides what would be half the area,
-// were the normals that cancel in S spread evenly. Taking S alone, a closed object would send nothing.
+// A far piece that turns both faces and backs to x: a bolt, a chair's leg. Half of the sum of |n.d| and of
+// -n.d over its triangles is the projected area that faces x; the second is S's, the first is S's own besides
+// what would be half the area, were the normals that cancel in S spread evenly. Taking S alone, a closed
+// object would send nothing.
 vec3 rounded_dipole(const vec3& d, float squared, const vec3& summed_normal, float area) {
   const float distance = std::sqrt(squared);
   const float net = -dot(d, summed_normal) / distance;
@@ -65,7 +69,7 @@ vec3 rounded_dipole(const vec3& d, float squared, const vec3& summed_normal, flo
 struct PlacedTree {
   const Part& part;
   const FaceClusterTree& tree;
-  mat3 area_map;      // to the element's side
+  mat3 area_map;  // to the element's side
   float winding;
 };
 
@@ -78,7 +82,8 @@ vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& 
   const vec3 d = centre - x;
   if (!in_front(x, a, normal)) return vec3(0);
   const float squared = dot(d, d);
-  const float radius_squared = std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
+  const float radius_squared =
+      std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
   const float factor = -dot(d, normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
   if (small_enough(factor, std::sqrt(radius_squared), squared)) {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
@@ -115,8 +120,10 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     const float cone_sine = std::sqrt(std::max(0.0f, 1 - node.cone_cosine * node.cone_cosine));
     const float extent = std::min(1.0f, radius / std::max(distance, 1e-30f));
     const float slack = node.cone_cosine > 0 ? std::min(1.0f, cone_sine + extent) : 1.0f;
-    if (squared > radius * radius && facing < -slack && node.cone_cosine > 0) continue;  // all seen from behind
-    // At most: the cosines at both ends, as far as the cluster's extent leaves them open, over the squared distance.
+    if (squared > radius * radius && facing < -slack && node.cone_cosine > 0)
+      continue;  // all seen from behind
+    // At most: the cosines at both ends, as far as the cluster's extent leaves them open, over the squared
+    // distance.
     const float at_receiver = std::min(1.0f, (std::abs(dot(d, n)) + radius) / (distance + 1e-30f));
     const float at_source = std::min(1.0f, std::max(0.0f, facing) + slack);
     const float factor = area * at_receiver * at_source / (kPi * squared + 1e-30f);
@@ -166,12 +173,14 @@ vec3 point_light_transfer(const Light& light, const vec3& x, const vec3& n) {
 }
 
 // Reaches from surface to surface without touching either.
-Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const vec3& to_normal, float epsilon) {
+Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const vec3& to_normal,
+                float epsilon) {
   Ray ray;
   ray.origin = from + epsilon * from_normal;
   ray.direction = to + epsilon * to_normal - ray.origin;
   ray.near = 0;
-  // Ends short of the target by what its surface may stand out beside it; at closer quarters nothing fits between.
+  // Ends short of the target by what its surface may stand out beside it; at closer quarters nothing fits
+  // between.
   const float distance = length(ray.direction);
   ray.far = distance > 4 * epsilon ? 1 - 2 * epsilon / distance : 0.0f;
   return ray;
@@ -182,12 +191,13 @@ uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCou
   const uint32_t blocked = caster.occluded_packet(rays);
   const auto time = std::chrono::steady_clock::now() - start;
   count.rays += rays.size();
-  count.nanoseconds += static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  count.nanoseconds +=
+      static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
   return blocked;
 }
 
-// Splits a link's light into a part that follows the normal and one that does not, by least squares over the samples,
-// keeping the sampled mean; and measures what remains unexplained.
+// Splits a link's light into a part that follows the normal and one that does not, by least squares over the
+// samples, keeping the sampled mean; and measures what remains unexplained.
 void fit_model(Link& link, std::span<const float> received, std::span<const vec3> normals) {
   const auto count = static_cast<float>(received.size());
   float predicted_mean = 0;
@@ -201,7 +211,9 @@ void fit_model(Link& link, std::span<const float> received, std::span<const vec3
       variance += predicted * predicted;
     }
     // One normal, or none to tell apart: all is vector.
-    const float follows = variance > 1e-6f * link.mean * link.mean * count ? std::clamp(covariance / variance, 0.0f, 1.0f) : 1.0f;
+    const float follows = variance > 1e-6f * link.mean * link.mean * count
+                              ? std::clamp(covariance / variance, 0.0f, 1.0f)
+                              : 1.0f;
     link.transfer *= follows * scale;
     link.ambient = (1 - follows) * link.mean;
   } else {
@@ -209,7 +221,8 @@ void fit_model(Link& link, std::span<const float> received, std::span<const vec3
     link.ambient = link.mean;
   }
   for (size_t i = 0; i < received.size(); ++i)
-    link.spread = std::max(link.spread, std::abs(received[i] - link.ambient - std::max(0.0f, dot(normals[i], link.transfer))));
+    link.spread = std::max(
+        link.spread, std::abs(received[i] - link.ambient - std::max(0.0f, dot(normals[i], link.transfer))));
 }
 
 }  // namespace
@@ -232,11 +245,13 @@ namespace {
 vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
   const Element& e = pool[source];
   switch (e.kind) {
-    case ElementKind::kVolume: return volume_transfer(pool, source, x, n);
+    case ElementKind::kVolume:
+      return volume_transfer(pool, source, x, n);
     case ElementKind::kCluster:
     case ElementKind::kTriangle: {
       const Part& part = pool.surfaces().parts[e.part];
-      const PlacedTree placed{part, pool.surfaces().tree(part), e.back ? -1.0f * part.area_map : part.area_map,
+      const PlacedTree placed{part, pool.surfaces().tree(part),
+                              e.back ? -1.0f * part.area_map : part.area_map,
                               e.back ? -part.winding : part.winding};
       if (e.kind == ElementKind::kTriangle) return triangle_transfer(placed, e.shape, x, n);
       return tree_transfer(placed, e.shape, x, n);
@@ -250,8 +265,10 @@ vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, 
         return flat_dipole(d, squared, e.summed_normal, n, e.area / kPi);
       return polygon_form_factor(x, n, pool.polygon(source).span());
     }
-    case ElementKind::kSky: return sky_form_factor(n, pool.sky_corners(source));
-    case ElementKind::kPoint: return point_light_transfer(pool.light(source), x, n);
+    case ElementKind::kSky:
+      return sky_form_factor(n, pool.sky_corners(source));
+    case ElementKind::kPoint:
+      return point_light_transfer(pool.light(source), x, n);
     case ElementKind::kSun: {
       const vec3 to_light = -pool.light(source).direction;
       return dot(to_light, n) > 0 ? to_light : vec3(0);
@@ -270,8 +287,8 @@ vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, co
   return is_surface(pool[source].kind) && factor > 1 ? m / factor : m;
 }
 
-float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                           uint32_t seed, RayCount& count) const {
+float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
+                           uint32_t rays, uint32_t seed, RayCount& count) const {
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
@@ -286,7 +303,8 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   std::array<float, 16> weight;
   float seen = 0, all = 0;
   const vec3 way = e.centre - x;
-  const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume && dot(way, way) < kNearSource * e.radius * e.radius;
+  const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume &&
+                    dot(way, way) < kNearSource * e.radius * e.radius;
   const uint32_t turn = hash(seed, source);
   for (uint32_t first = 0; first < rays; first += 16) {
     size_t size = 0;
@@ -305,10 +323,12 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
         continue;
       }
       // Stored samples suffice for few rays, and spare the descent.
-      const bool stored = rays < kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
-      const SurfacePoint y =
-          stored ? pool.stored_sample(source, (i * kStoredSamples) / rays + turn % std::max(1u, kStoredSamples / rays))
-                 : pool.sample_at(source, uv.u, uv.v);
+      const bool stored =
+          rays < kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
+      const SurfacePoint y = stored
+                                 ? pool.stored_sample(source, (i * kStoredSamples) / rays +
+                                                                  turn % std::max(1u, kStoredSamples / rays))
+                                 : pool.sample_at(source, uv.u, uv.v);
       const vec3 d = y.position - x;
       const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
       if (here <= 0 || there <= 0) continue;
@@ -351,14 +371,14 @@ namespace {
 
 // What one receiver point gets of a link's source.
 struct PointSample {
-  vec3 transfer{0};      // visibility included
+  vec3 transfer{0};  // visibility included
   float received = 0;
   float unoccluded = 0;
   uint32_t rays = 0;
 };
 
-PointSample sample_point(const ElementPool& pool, const Visibility& visibility, ElementId source, const SurfacePoint& x,
-                         uint32_t rays, uint32_t seed, RayCount& count) {
+PointSample sample_point(const ElementPool& pool, const Visibility& visibility, ElementId source,
+                         const SurfacePoint& x, uint32_t rays, uint32_t seed, RayCount& count) {
   PointSample out;
   out.transfer = point_transfer(pool, source, x.position, x.normal);
   out.unoccluded = dot(out.transfer, x.normal);
@@ -376,24 +396,25 @@ void finish(Link& link, float received, float unoccluded, uint32_t rays) {
   link.rays = static_cast<uint8_t>(std::min(rays, 255u));
 }
 
-// A gradient may take the light from nothing at one end to twice the mean at the other, and no further: fitted to samples
-// that happen to lie close together it could be anything.
+// A gradient may take the light from nothing at one end to twice the mean at the other, and no further:
+// fitted to samples that happen to lie close together it could be anything.
 void limit_gradient(Link& link, float radius) {
   const float rise = length(link.transfer) * radius;
   if (rise > link.ambient) link.transfer *= link.ambient / std::max(rise, 1e-30f);
 }
 
-// A triangle or patch: mean and gradient from the quadrature's inner ring, doubt from what these leave and from the centre,
-// which alone tells a bend.
-void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
-                 RayCount& count) {
+// A triangle or patch: mean and gradient from the quadrature's inner ring, doubt from what these leave and
+// from the centre, which alone tells a bend.
+void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points,
+                  uint32_t rays_per_point, RayCount& count) {
   std::array<SurfacePoint, 9> at;
   pool.quadrature(link.receiver, {at.data(), points});
   at[points] = {pool[link.receiver].centre, at[0].normal};
   std::array<PointSample, 9> sample;
   uint32_t rays = 0;
   for (uint32_t i = 0; i <= points; ++i) {
-    sample[i] = sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
+    sample[i] =
+        sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
     rays += sample[i].rays;
     if (i == points) break;
     link.mean += sample[i].received / static_cast<float>(points);
@@ -416,15 +437,18 @@ void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& l
 }
 
 // Mean and plane fitted by least squares over samples that lie where the triangles do.
-void fit_plane(Link& link, const Element& receiver, std::span<const SurfacePoint> at, std::span<const float> received) {
+void fit_plane(Link& link, const Element& receiver, std::span<const SurfacePoint> at,
+               std::span<const float> received) {
   const auto count = static_cast<float>(at.size());
   const vec3 n = normalize_or(receiver.summed_normal, vec3(0, 1, 0));
   const vec3 u = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y)), v = cross(n, u);
   vec2 middle(0);
-  for (const SurfacePoint& p : at) middle += vec2(dot(p.position - receiver.centre, u), dot(p.position - receiver.centre, v)) / count;
+  for (const SurfacePoint& p : at)
+    middle += vec2(dot(p.position - receiver.centre, u), dot(p.position - receiver.centre, v)) / count;
   float xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
   for (size_t i = 0; i < at.size(); ++i) {
-    const vec2 p = vec2(dot(at[i].position - receiver.centre, u), dot(at[i].position - receiver.centre, v)) - middle;
+    const vec2 p =
+        vec2(dot(at[i].position - receiver.centre, u), dot(at[i].position - receiver.centre, v)) - middle;
     const float f = received[i] - link.mean;
     xx += p.x * p.x;
     xy += p.x * p.y;
@@ -452,8 +476,8 @@ void fit_plane(Link& link, const Element& receiver, std::span<const SurfacePoint
   link.mean = link.ambient;  // the centre is the centroid
 }
 
-void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points, uint32_t rays_per_point,
-                 RayCount& count) {
+void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& link, uint32_t points,
+                  uint32_t rays_per_point, RayCount& count) {
   std::array<SurfacePoint, kStoredSamples> at;
   pool.quadrature(link.receiver, {at.data(), points});
   std::array<float, kStoredSamples> received{};
@@ -470,7 +494,8 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
     link.mean += sample.received / static_cast<float>(points);
     link.unoccluded += sample.unoccluded / static_cast<float>(points);
   }
-  // The vector is that at the points which face the source: the others' normals clip it when it is pushed to them.
+  // The vector is that at the points which face the source: the others' normals clip it when it is pushed to
+  // them.
   if (facing > 0) link.transfer /= static_cast<float>(facing);
   finish(link, link.mean, link.unoccluded, rays);
   const Element& receiver = pool[link.receiver];
@@ -494,8 +519,9 @@ void set_mean(Link& link, float mean) {
 }
 
 // What an element gets of another at its own points: means over `points` of them.
-PointSample sample_element(const ElementPool& pool, const Visibility& visibility, ElementId at_element, ElementId towards,
-                           uint32_t points, uint32_t rays_per_point, bool second, RayCount& count) {
+PointSample sample_element(const ElementPool& pool, const Visibility& visibility, ElementId at_element,
+                           ElementId towards, uint32_t points, uint32_t rays_per_point, bool second,
+                           RayCount& count) {
   std::array<SurfacePoint, 8> at;
   pool.quadrature(at_element, {at.data(), points}, second);
   PointSample sum;
@@ -509,19 +535,22 @@ PointSample sample_element(const ElementPool& pool, const Visibility& visibility
   return sum;
 }
 
-// A link's mean from the source's end: A_r F_rs = A_s F_sr. Over a large receiver the light of a small source near it is a
-// peak between the samples, lost more often than caught; seen from the source the same transfer is smooth.
-PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibility, const Link& link, bool second,
-                              RayCount& count) {
+// A link's mean from the source's end: A_r F_rs = A_s F_sr. Over a large receiver the light of a small source
+// near it is a peak between the samples, lost more often than caught; seen from the source the same transfer
+// is smooth.
+PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibility, const Link& link,
+                              bool second, RayCount& count) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
-  PointSample sample = sample_element(pool, visibility, link.source, link.receiver, s.flat ? 4 : 8, s.flat ? 4 : 2, second, count);
+  PointSample sample = sample_element(pool, visibility, link.source, link.receiver, s.flat ? 4 : 8,
+                                      s.flat ? 4 : 2, second, count);
   sample.received *= s.area / r.area;
   sample.unoccluded *= s.area / r.area;
   return sample;
 }
 
 bool reciprocity_helps(const Element& r, const Element& s) {
-  if (r.kind == ElementKind::kVolume || s.kind == ElementKind::kVolume || s.kind > ElementKind::kPatch) return false;
+  if (r.kind == ElementKind::kVolume || s.kind == ElementKind::kVolume || s.kind > ElementKind::kPatch)
+    return false;
   const vec3 apart = s.centre - r.centre;
   return s.area < 0.5f * r.area && dot(apart, apart) < 6.25f * r.radius * r.radius;
 }
@@ -533,10 +562,10 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   Link link;
   link.receiver = receiver;
   link.source = source;
-  const bool polygon = pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
+  const bool polygon =
+      pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
   (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
-  if (receiver != source && reciprocity_helps(pool[receiver], pool[source]))
-  {
+  if (receiver != source && reciprocity_helps(pool[receiver], pool[source])) {
     const PointSample sample = sample_reciprocal(pool, visibility, link, false, ray_count);
     link.spread += std::abs(sample.received - link.mean);
     set_mean(link, sample.received);
@@ -555,7 +584,8 @@ void resample_link(const ElementPool& pool, const Visibility& visibility, Link& 
   } else {
     const bool polygon = r.kind == ElementKind::kTriangle || r.kind == ElementKind::kPatch;
     const uint32_t points = polygon ? 4 : 8;
-    sample = sample_element(pool, visibility, link.receiver, link.source, points, polygon ? 4 : 2, true, ray_count);
+    sample = sample_element(pool, visibility, link.receiver, link.source, points, polygon ? 4 : 2, true,
+                            ray_count);
   }
   if (sample.unoccluded <= 0) return;
   set_mean(link, sample.received);

@@ -30,7 +30,7 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       const vec3 b = seen_radiosity(pool, link, state.shown);
       const float most = largest(b);
       if (most <= 0) continue;
-      if ((link.mean + link.spread) * most < 0.5f * options.ray_share * whole) {
+      if ((link.mean + link.spread) * most < 0.1f * options.ray_share * whole) {
         const Element& r = pool[id];
         const float modelled = r.flat ? link.ambient + dot(x - r.centre, link.transfer)
                                       : std::max(0.0f, dot(n, link.transfer)) + link.ambient;

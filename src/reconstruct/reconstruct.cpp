@@ -49,9 +49,10 @@ vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) 
 
 // A vertex normal that leans from its face looks partly below it, where nothing comes from: (1 - cos) / 2 of
 // its hemisphere. What it would get of an even surrounding is restored, as far as it does see less than all
-// there is.
+// there is. And no point sees more than all there is, whatever the rounding of its form factors.
 float horizon_gain(float cosine, float seen) {
-  return std::clamp(1 / std::max(seen, 1e-3f), 1.0f, 2 / (1 + std::clamp(cosine, 0.0f, 1.0f)));
+  const float all = 1 / std::max(seen, 1e-3f);
+  return all < 1 ? all : std::min(all, 2 / (1 + std::clamp(cosine, 0.0f, 1.0f)));
 }
 
 // A point that sees less than this share of what lies before it is inside or behind something.

@@ -93,6 +93,12 @@ FaceClusterTree lay_out(TriangleMesh mesh, MergeForest forest) {
         tree.mesh.source_triangles[i] = mesh.source_triangles[order[i]];
       },
       16384);
+  if (!mesh.duplicates.empty()) {
+    std::vector<uint32_t> place(order.size());
+    for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<uint32_t>(i);
+    for (DuplicateTriangle& d : mesh.duplicates) d.twin = place[d.twin];
+  }
+  tree.mesh.duplicates = std::move(mesh.duplicates);
   return tree;
 }
 

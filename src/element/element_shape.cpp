@@ -20,6 +20,16 @@ float orientation(const Part& part, const Element& element) {
   return element.back ? -part.winding : part.winding;
 }
 
+// How far the vertices of a range of triangles lie from the plane through `centre`.
+float greatest_height(const Part& part, const TriangleMesh& mesh, uint32_t first, uint32_t count,
+                      const vec3& centre, const vec3& normal) {
+  float height = 0;
+  for (uint32_t t = first; t < first + count; ++t)
+    for (int k = 0; k < 3; ++k)
+      height = std::max(height, std::abs(dot(part.positions[mesh.triangles[t][k]] - centre, normal)));
+  return height;
+}
+
 vec3 side_normal(const Part& part, const Element& element, const vec3& tree_area_vector) {
   const vec3 front = part.area_map * tree_area_vector;
   return element.back ? -front : front;
@@ -53,6 +63,10 @@ void ElementPool::fill_cluster(Element& element, ClusterRef ref) const {
   element.cone_cosine = node.cone_cosine;
   element.flat =
       node.cone_cosine > kFlatCosine || (element.parent != kNoElement && elements_[element.parent].flat);
+  element.thickness = element.radius;
+  if (element.flat)
+    element.thickness = greatest_height(part, set_->tree(part).mesh, node.first, node.count, element.centre,
+                                        normalize_or(element.summed_normal, vec3(0, 1, 0)));
   fill_paint(element, node.first, node.count);
 }
 
@@ -154,6 +168,7 @@ void ElementPool::fill_volume(ElementId id) {
   element.centre = share * a.centre + (1 - share) * b.centre;
   element.radius =
       std::max(length(a.centre - element.centre) + a.radius, length(b.centre - element.centre) + b.radius);
+  element.thickness = element.radius;
   element.summed_normal = a.summed_normal + b.summed_normal;
   element.cone_cosine = -1;
   element.reflectance = share * a.reflectance + (1 - share) * b.reflectance;

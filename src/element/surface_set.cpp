@@ -224,6 +224,7 @@ void list_surfaces(SurfaceSet& set) {
     set.triangles += static_cast<uint32_t>(tree.mesh.triangles.size());
     set.skipped.degenerate += tree.mesh.skipped.degenerate;
     set.skipped.not_finite += tree.mesh.skipped.not_finite;
+    set.skipped.duplicate += tree.mesh.skipped.duplicate;
     for (const ClusterRef root : tree.roots) {
       if (is_triangle(root)) {
         const UVec3& c = tree.mesh.triangles[triangle_of(root)];

@@ -12,6 +12,14 @@ namespace goldthread {
 struct SkippedTriangles {
   uint64_t not_finite = 0;  ///< a corner is NaN or infinite
   uint64_t degenerate = 0;  ///< no area: corners coincide or lie on a line
+  uint64_t duplicate = 0;   ///< the same corners, in the same sense, as one that is kept
+};
+
+/// A triangle that was left out since another is the same.
+struct DuplicateTriangle {
+  uint32_t source = 0;  ///< its number in the source primitive
+  uint32_t twin = 0;    ///< TriangleMesh::triangles
+  uint32_t turn = 0;    ///< its corner k is corner (k + turn) % 3 of the twin
 };
 
 /// Positions merged where equal (glTF splits vertices at every normal and UV seam; light must not see that),
@@ -20,10 +28,12 @@ struct TriangleMesh {
   std::vector<vec3> positions;
   std::vector<UVec3> triangles;  ///< corners as indices into positions, in the source's order and winding
   std::vector<uint32_t> source_triangles;  ///< per triangle: its number in the source primitive
+  std::vector<DuplicateTriangle> duplicates;
   SkippedTriangles skipped;
 };
 
-/// Welds bit-equal positions (-0 equals 0) and drops triangles without area. `indices` must be in range.
+/// Welds bit-equal positions (-0 equals 0) and drops triangles without area and
+/// all but the first of equal ones. `indices` must be in range.
 /// Corner k of a kept triangle is corner k of its source triangle.
 TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices);
 

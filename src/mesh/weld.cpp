@@ -1,6 +1,6 @@
-// Welding by partitioned hashing: positions are dealt into buckets by the high bits of their hash, and each
-// bucket finds its duplicates alone, in index order. So the lowest index of equal positions always stands for
-// all of them, whatever the number of threads.
+// Welding by partitioned hashing: things are dealt into buckets by the high bits of their hash, and each
+// bucket finds its duplicates alone, in index order. So the lowest index of equal positions (and of equal
+// triangles) always stands for all of them, whatever the number of threads.
 #include <bit>
 #include <cstring>
 
@@ -32,6 +32,12 @@ uint32_t hash_of(const PositionBits& b) {
   return uint32_t(h >> 32);
 }
 
+/// A triangle's corners turned so that the lowest comes first: the winding stays.
+UVec3 turned(const UVec3& t) {
+  if (t.x <= t.y && t.x <= t.z) return t;
+  return t.y <= t.z ? UVec3(t.y, t.z, t.x) : UVec3(t.z, t.x, t.y);
+}
+
 size_t block_count(size_t n) {
   return (n + kBlock - 1) / kBlock;
 }
@@ -49,50 +55,48 @@ struct Buckets {
   std::vector<uint32_t> members;
 };
 
-Buckets deal(std::span<const vec3> positions) {
-  const size_t blocks = block_count(positions.size());
+/// `hash(i)` is the hash of thing i.
+template <typename Hash>
+Buckets deal(size_t count, const Hash& hash) {
+  const size_t blocks = block_count(count);
   std::vector<std::array<uint32_t, kBuckets>> place(blocks);
-  const auto bucket_of = [&](size_t i) { return hash_of(bits_of(positions[i])) >> (32 - kBucketBits); };
-  for_blocks(positions.size(), [&](size_t block, size_t first, size_t last) {
+  const auto bucket_of = [&](size_t i) { return hash(i) >> (32 - kBucketBits); };
+  for_blocks(count, [&](size_t block, size_t first, size_t last) {
     place[block].fill(0);
     for (size_t i = first; i < last; ++i) ++place[block][bucket_of(i)];
   });
-  Buckets buckets{std::vector<uint32_t>(kBuckets + 1), std::vector<uint32_t>(positions.size())};
+  Buckets buckets{std::vector<uint32_t>(kBuckets + 1), std::vector<uint32_t>(count)};
   uint32_t total = 0;
   for (uint32_t b = 0; b < kBuckets; ++b) {
     buckets.begin[b] = total;
     for (auto& counts : place) total += std::exchange(counts[b], total);
   }
   buckets.begin[kBuckets] = total;
-  for_blocks(positions.size(), [&](size_t block, size_t first, size_t last) {
+  for_blocks(count, [&](size_t block, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) buckets.members[place[block][bucket_of(i)]++] = uint32_t(i);
   });
   return buckets;
 }
 
-/// Open addressing over one bucket; `first_equal` gets the lowest equal index of each member.
-void find_equal(std::span<const vec3> positions, std::span<const uint32_t> members,
-                std::span<uint32_t> first_equal) {
-  if (members.empty()) return;
-  const size_t capacity = std::bit_ceil(members.size() * 2);
-  std::vector<uint32_t> table(capacity, kNone);
-  for (const uint32_t i : members) {
-    const PositionBits bits = bits_of(positions[i]);
-    size_t slot = hash_of(bits) & (capacity - 1);
-    while (table[slot] != kNone && bits_of(positions[table[slot]]) != bits)
-      slot = (slot + 1) & (capacity - 1);
-    if (table[slot] == kNone) table[slot] = i;
-    first_equal[i] = table[slot];
-  }
-}
-
-std::vector<uint32_t> find_equal_positions(std::span<const vec3> positions) {
-  std::vector<uint32_t> first_equal(positions.size());
-  const Buckets buckets = deal(positions);
+/// The lowest index of what equals each of `count` things; `key(i)` has ==, and `hash` is of a key.
+template <typename Key, typename Hash>
+std::vector<uint32_t> find_equal(size_t count, const Key& key, const Hash& hash) {
+  std::vector<uint32_t> first_equal(count);
+  const Buckets buckets = deal(count, [&](size_t i) { return hash(key(i)); });
   parallel_for(kBuckets, [&](size_t b) {
-    find_equal(positions,
-               std::span(buckets.members).subspan(buckets.begin[b], buckets.begin[b + 1] - buckets.begin[b]),
-               first_equal);
+    const std::span<const uint32_t> members =
+        std::span(buckets.members).subspan(buckets.begin[b], buckets.begin[b + 1] - buckets.begin[b]);
+    if (members.empty()) return;
+    // Open addressing over one bucket.
+    const size_t capacity = std::bit_ceil(members.size() * 2);
+    std::vector<uint32_t> table(capacity, kNone);
+    for (const uint32_t i : members) {
+      const auto own = key(i);
+      size_t slot = hash(own) & (capacity - 1);
+      while (table[slot] != kNone && !(key(table[slot]) == own)) slot = (slot + 1) & (capacity - 1);
+      if (table[slot] == kNone) table[slot] = i;
+      first_equal[i] = table[slot];
+    }
   });
   return first_equal;
 }
@@ -148,6 +152,33 @@ void keep_sound(TriangleMesh& mesh, std::span<const uint32_t> indices, std::span
   });
 }
 
+/// Leaves out triangles that repeat an earlier one, corners and winding: real files hold whole walls twice,
+/// and each copy would take the light that only one can get.
+void drop_duplicates(TriangleMesh& mesh) {
+  const std::vector<uint32_t> first = find_equal(
+      mesh.triangles.size(), [&](size_t i) { return turned(mesh.triangles[i]); },
+      [](const UVec3& t) { return hash_of(PositionBits{t.x, t.y, t.z}); });
+  std::vector<uint32_t> number(mesh.triangles.size());
+  size_t kept = 0;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const UVec3 corners = mesh.triangles[t];
+    const uint32_t source = mesh.source_triangles[t];
+    if (first[t] != t) {
+      const uint32_t twin = number[first[t]];
+      uint32_t turn = 0;
+      while (mesh.triangles[twin][turn] != corners.x) ++turn;
+      mesh.duplicates.push_back({source, twin, turn});
+      continue;
+    }
+    number[t] = uint32_t(kept);
+    mesh.triangles[kept] = corners;
+    mesh.source_triangles[kept++] = source;
+  }
+  mesh.triangles.resize(kept);
+  mesh.source_triangles.resize(kept);
+  mesh.skipped.duplicate = mesh.duplicates.size();
+}
+
 /// Keeps the positions that triangles use, in their source order, and renumbers.
 void keep_used_positions(TriangleMesh& mesh, std::span<const vec3> positions) {
   std::vector<uint32_t> number(positions.size(), 0);
@@ -169,11 +200,13 @@ void keep_used_positions(TriangleMesh& mesh, std::span<const vec3> positions) {
 
 TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices) {
   TriangleMesh mesh;
-  const std::vector<uint32_t> first_equal = find_equal_positions(positions);
+  const std::vector<uint32_t> first_equal =
+      find_equal(positions.size(), [&](size_t i) { return bits_of(positions[i]); }, hash_of);
   const std::vector<Soundness> soundness = judge_all(positions, indices, first_equal);
   mesh.skipped.not_finite = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kNotFinite));
   mesh.skipped.degenerate = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kDegenerate));
   keep_sound(mesh, indices, first_equal, soundness);
+  drop_duplicates(mesh);
   keep_used_positions(mesh, positions);
   return mesh;
 }

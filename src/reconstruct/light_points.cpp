@@ -141,15 +141,20 @@ bool keep_source_mesh(const LeafView& view, const Primitive& primitive, const Pa
                       std::vector<uint32_t>& point_of_vertex) {
   if (view.leaves != nullptr) return false;
   point_of_vertex.assign(primitive.positions.size(), kNoPoint);
-  for (uint32_t f = 0; f < view.face_count(); ++f) {
-    const uint32_t* corner = &primitive.indices[3 * size_t{view.mesh.source_triangles[f]}];
+  const auto take = [&](uint32_t source, uint32_t face, uint32_t turn) {
     for (uint32_t k = 0; k < 3; ++k) {
-      uint32_t& point = point_of_vertex[corner[k]];
-      const uint32_t wanted = points.corners[points.corner_first[f] + k];
+      uint32_t& point = point_of_vertex[primitive.indices[3 * size_t{source} + k]];
+      const uint32_t wanted = points.corners[points.corner_first[face] + (k + turn) % 3];
       if (point != kNoPoint && point != wanted) return false;
       point = wanted;
     }
-  }
+    return true;
+  };
+  for (uint32_t f = 0; f < view.face_count(); ++f)
+    if (!take(view.mesh.source_triangles[f], f, 0)) return false;
+  // A triangle that lies there twice is drawn twice.
+  for (const DuplicateTriangle& d : view.mesh.duplicates)
+    if (!take(d.source, d.twin, d.turn)) return false;
   return true;
 }
 

@@ -39,15 +39,19 @@ FixedNormals fix_mesh(Mesh& mesh, const JoinedMesh& joined, const Winding& windi
   for (const Primitive& primitive : mesh.primitives)
     turned.emplace_back(primitive.triangle_count(), uint8_t{0});
   std::vector<uint8_t> touched(winding.shells.size(), 0);
-  for (size_t t = 0; t < turn.size(); ++t) {
-    if (!turn[t]) continue;
-    const uint32_t source = joined.mesh.source_triangles[t];
+  const auto mark = [&](uint32_t source) {
     const auto after = std::upper_bound(joined.first_triangle.begin(), joined.first_triangle.end(), source);
     const auto primitive = static_cast<size_t>(after - joined.first_triangle.begin()) - 1;
     turned[primitive][source - joined.first_triangle[primitive]] = 1;
-    touched[winding.shell_of_triangle[t]] = 1;
     ++fixed.triangles;
+  };
+  for (size_t t = 0; t < turn.size(); ++t) {
+    if (!turn[t]) continue;
+    mark(joined.mesh.source_triangles[t]);
+    touched[winding.shell_of_triangle[t]] = 1;
   }
+  for (const DuplicateTriangle& duplicate : joined.mesh.duplicates)
+    if (turn[duplicate.twin]) mark(duplicate.source);
   if (fixed.triangles == 0) return fixed;
   for (size_t p = 0; p < turned.size(); ++p) turn_triangles(mesh.primitives[p], turned[p]);
   fixed.shells = static_cast<uint32_t>(std::count(touched.begin(), touched.end(), 1));

@@ -71,7 +71,8 @@ MeshFacts measure_mesh(const Scene& scene, uint32_t number, const ShellCheck& ch
   facts.not_finite = joined.mesh.skipped.not_finite;
   facts.degenerate = joined.mesh.skipped.degenerate;
   for (const UVec3& t : joined.mesh.triangles) facts.thin += is_thin(joined.mesh, t);
-  facts.duplicate = count_duplicates(joined.mesh);
+  // Those wound alike, and those that face the other way.
+  facts.duplicate = joined.mesh.skipped.duplicate + count_duplicates(joined.mesh);
   count_edges(joined.mesh, facts);
   const Winding winding = find_winding(joined.mesh, joined.twins);
   count_shells(winding, check.find_rooms(number, winding), two_sided, facts);

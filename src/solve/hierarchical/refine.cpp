@@ -88,18 +88,35 @@ void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& poin
   rays = is_light(s.kind) ? 1 : r.kind <= ElementKind::kCluster ? 2 : 4;
 }
 
-// Whether two elements can see each other at all, by their cones of normals: spares a sampling.
-bool faces_away(const Element& from, const Element& to) {
-  if (from.cone_cosine < 0.999f || to.kind == ElementKind::kSky || is_light(to.kind)) return false;
-  const vec3 n = normalize_or(from.summed_normal, vec3(0));
-  return dot(n, to.centre - from.centre) < -(to.radius + 1e-3f * from.radius);
+// The most that a point of `e` can lie above the plane through `at` with unit normal `n`: exact for polygons,
+// and for flat clusters that of a disc of their thickness.
+float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const vec3& n) {
+  const Element& e = pool[id];
+  if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
+    float highest = std::numeric_limits<float>::lowest();
+    for (const vec3& corner : pool.polygon(id).span()) highest = std::max(highest, dot(corner - at, n));
+    return highest;
+  }
+  const vec3 axis = normalize_or(e.summed_normal, n);
+  const float reach = e.thickness * std::abs(dot(axis, n)) + e.radius * length(cross(axis, n));
+  return dot(e.centre - at, n) + std::min(reach, e.radius);
 }
 
-bool hopeless(const ElementPool& pool, const Child& child) {
+// Whether all of `to` lies on or below all of the flat element `from`: nothing passes between them. `rounding`
+// metres above are as good as none.
+bool faces_away(const ElementPool& pool, ElementId from, ElementId to, float rounding) {
+  const Element& e = pool[from];
+  if (!e.flat) return false;
+  const vec3 n = normalize_or(e.summed_normal, vec3(0));
+  return highest_above(pool, to, e.centre, n) <= rounding - e.thickness;
+}
+
+bool hopeless(const ElementPool& pool, const Child& child, float rounding) {
   const Element &r = pool[child.receiver], &s = pool[child.source];
-  if (child.receiver == child.source) return r.cone_cosine > 0.9999f;
-  if (is_light(s.kind) || s.kind == ElementKind::kSky) return false;
-  return faces_away(r, s) || faces_away(s, r);
+  if (child.receiver == child.source) return r.flat && r.thickness <= rounding;
+  if (!is_surface(s.kind)) return false;
+  return faces_away(pool, child.receiver, child.source, rounding) ||
+         faces_away(pool, child.source, child.receiver, rounding);
 }
 
 void list_children(const ElementPool& pool, const Link& link, Decision decision, std::vector<Child>& out) {
@@ -177,8 +194,13 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   // would lose light.
   const float reach = r.radius + s.radius;
   const vec3 apart = s.centre - r.centre;
-  if (is_surface(s.kind) && dot(apart, apart) < reach * reach)
+  const double squared = static_cast<double>(dot(apart, apart));
+  if (is_surface(s.kind) && squared < static_cast<double>(reach * reach)) {
     error.receiver += kNearError * b * static_cast<double>(std::min(r.area, s.area));
+  } else if (is_surface(s.kind) && unoccluded <= 0) {
+    // No sample of the one faced the other, yet nothing says that they are turned away.
+    error.receiver += kNearError * b * area * static_cast<double>(s.area) / (3.14159 * squared);
+  }
   // A receiver that turns many ways: few samples may all look away, and such links would be kept just because
   // of that.
   if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(r, s, unoccluded);
@@ -231,7 +253,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
       ++counters.links_refined;
       list_children(pool, link, decisions[i], children);
     }
-    std::erase_if(children, [&](const Child& c) { return hopeless(pool, c); });
+    std::erase_if(children, [&](const Child& c) { return hopeless(pool, c, visibility.epsilon); });
     if (options.most_links > 0 && all.size() + children.size() > options.most_links) counters.limited = true;
     std::atomic<uint64_t> rays{0}, nanoseconds{0};
     const size_t first = all.size();
@@ -254,16 +276,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
           nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);
         },
         16);
-    for (size_t i = 0; i < children.size(); ++i) {
-      Link& link = all[first + i];
-      const bool box = pool[link.receiver].kind == ElementKind::kVolume ||
-                       pool[link.source].kind == ElementKind::kVolume || link.receiver == link.source;
-      if (link.unoccluded <= 0 && !box && pool[link.receiver].flat) {
-        link.alive = false;  // they do not face each other
-      } else {
-        next.push_back(first + i);
-      }
-    }
+    for (size_t i = 0; i < children.size(); ++i) next.push_back(first + i);
     total_rays += {rays.load(), nanoseconds.load()};
     if (between_waves) between_waves();
     if (counters.limited) break;

@@ -1,6 +1,7 @@
 #include "solve/hierarchical/transfer.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "base/rng.h"
@@ -299,49 +300,77 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
     }
     return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
   }
-  std::array<Ray, 16> packet;
-  std::array<float, 16> weight;
-  float seen = 0, all = 0;
   const vec3 way = e.centre - x;
   const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume &&
                     dot(way, way) < kNearSource * e.radius * e.radius;
+  const bool turns = e.kind == ElementKind::kVolume || (e.kind == ElementKind::kCluster && !e.flat);
   const uint32_t turn = hash(seed, source);
-  for (uint32_t first = 0; first < rays; first += 16) {
-    size_t size = 0;
-    for (uint32_t i = first; i < std::min(rays, first + 16); ++i) {
-      const UnitSquarePoint uv = r2_point(i, turn);
-      if (e.kind == ElementKind::kSky) {
-        const vec3 direction = pool.sky_direction(source, uv.u, uv.v);
-        if (dot(direction, n) <= 0) continue;
-        packet[size] = {origin, direction};
-        weight[size++] = dot(direction, n);
-        continue;
-      }
-      if (near) {
-        const SurfacePoint y = pool.sample_towards(source, x, n, uv.u, uv.v, weight[size]);
-        if (weight[size] > 0) packet[size++] = ray_between(x, n, y.position, y.normal, epsilon);
-        continue;
-      }
+  // A point of the source, and what it would bring: the more, the more it counts.
+  const auto candidate = [&](uint32_t i, uint32_t of, Ray& ray) -> float {
+    const UnitSquarePoint uv = r2_point(i, turn);
+    if (e.kind == ElementKind::kSky) {
+      ray = {origin, pool.sky_direction(source, uv.u, uv.v)};
+      return std::max(0.0f, dot(ray.direction, n));
+    }
+    float weight = 0;
+    SurfacePoint y;
+    if (near) {
+      y = pool.sample_towards(source, x, n, uv.u, uv.v, weight);
+    } else {
       // Stored samples suffice for few rays, and spare the descent.
       const bool stored =
-          rays < kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
-      const SurfacePoint y = stored
-                                 ? pool.stored_sample(source, (i * kStoredSamples) / rays +
-                                                                  turn % std::max(1u, kStoredSamples / rays))
-                                 : pool.sample_at(source, uv.u, uv.v);
+          of <= kStoredSamples && (e.kind == ElementKind::kVolume || e.kind == ElementKind::kCluster);
+      const uint32_t offset = turn % std::max(1u, kStoredSamples / of);
+      y = stored ? pool.stored_sample(source, (i * kStoredSamples) / of + offset)
+                 : pool.sample_at(source, uv.u, uv.v);
       const vec3 d = y.position - x;
       const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
-      if (here <= 0 || there <= 0) continue;
-      packet[size] = ray_between(x, n, y.position, y.normal, epsilon);
       // Bounded, so that one near sample does not decide alone.
-      weight[size++] = here * there / (squared * (squared + 0.05f * e.area));
+      if (here > 0 && there > 0) weight = here * there / (squared * (squared + 0.05f * e.area));
+    }
+    if (weight > 0) ray = ray_between(x, n, y.position, y.normal, epsilon);
+    return weight;
+  };
+  float seen = 0, all = 0;
+  for (uint32_t first = 0; first < rays; first += 16) {
+    const uint32_t batch = std::min(16u, rays - first);
+    if (!turns) {
+      std::array<Ray, 16> packet;
+      std::array<float, 16> weight;
+      size_t size = 0;
+      for (uint32_t i = first; i < first + batch; ++i)
+        if ((weight[size] = candidate(i, rays, packet[size])) > 0) ++size;
+      if (size == 0) continue;
+      const uint32_t blocked = timed_packet(*caster, {packet.data(), size}, count);
+      for (size_t k = 0; k < size; ++k) {
+        all += weight[k];
+        if ((blocked >> k & 1) == 0) seen += weight[k];
+      }
+      continue;
+    }
+    // Of what turns many ways most points face elsewhere, and of two or three chosen blindly often all: more
+    // are looked at, and rays go to them in proportion to what they would bring.
+    constexpr uint32_t kLook = 16;
+    std::array<Ray, kLook> found;
+    std::array<float, kLook> up_to;
+    uint32_t size = 0;
+    float sum = 0;
+    for (uint32_t i = 0; i < kLook; ++i) {
+      const float weight = candidate(first + i, rays <= kLook ? kLook : rays, found[size]);
+      if (weight > 0) up_to[size++] = sum += weight;
     }
     if (size == 0) continue;
-    const uint32_t blocked = timed_packet(*caster, {packet.data(), size}, count);
-    for (size_t k = 0; k < size; ++k) {
-      all += weight[k];
-      if ((blocked >> k & 1) == 0) seen += weight[k];
+    std::array<Ray, 16> packet;
+    const float start = unit_float(hash(turn, first));
+    for (uint32_t k = 0, at = 0; k < batch; ++k) {
+      const float target = sum * (static_cast<float>(k) + start) / static_cast<float>(batch);
+      while (at + 1 < size && up_to[at] < target) ++at;
+      packet[k] = found[at];
     }
+    const uint32_t blocked = timed_packet(*caster, {packet.data(), batch}, count);
+    all += sum;
+    seen += sum * static_cast<float>(batch - static_cast<uint32_t>(std::popcount(blocked & ((1u << batch) - 1)))) /
+            static_cast<float>(batch);
   }
   if (all > 0) return seen / all;
   // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
@@ -506,6 +535,9 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
   }
 }
 
+// Of the last measurement of links.
+constexpr uint32_t kFreshPoints = 8, kFreshRays = 2;
+
 // Gives a link another mean, keeping the shape of its light over the receiver if there was any to speak of.
 void set_mean(Link& link, float mean) {
   if (link.mean > 0.5f * mean) {
@@ -518,18 +550,16 @@ void set_mean(Link& link, float mean) {
   link.mean = mean;
 }
 
-// What an element gets of another at its own points: means over `points` of them.
-PointSample sample_element(const ElementPool& pool, const Visibility& visibility, ElementId at_element,
-                           ElementId towards, uint32_t points, uint32_t rays_per_point, bool second,
-                           RayCount& count) {
-  std::array<SurfacePoint, 8> at;
-  pool.quadrature(at_element, {at.data(), points}, second);
+// What an element gets of another at its own points: means over `at`.
+PointSample sample_points(const ElementPool& pool, const Visibility& visibility, ElementId towards,
+                          std::span<const SurfacePoint> at, uint32_t rays_per_point, uint32_t seed,
+                          RayCount& count) {
   PointSample sum;
-  for (uint32_t i = 0; i < points; ++i) {
-    const PointSample sample = sample_point(pool, visibility, towards, at[i], rays_per_point,
-                                            at_element * 16 + i + (second ? 8 : 0), count);
-    sum.received += sample.received / static_cast<float>(points);
-    sum.unoccluded += sample.unoccluded / static_cast<float>(points);
+  const auto points = static_cast<float>(at.size());
+  for (uint32_t i = 0; i < at.size(); ++i) {
+    const PointSample sample = sample_point(pool, visibility, towards, at[i], rays_per_point, seed + i, count);
+    sum.received += sample.received / points;
+    sum.unoccluded += sample.unoccluded / points;
     sum.rays += sample.rays;
   }
   return sum;
@@ -539,10 +569,13 @@ PointSample sample_element(const ElementPool& pool, const Visibility& visibility
 // near it is a peak between the samples, lost more often than caught; seen from the source the same transfer
 // is smooth.
 PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibility, const Link& link,
-                              bool second, RayCount& count) {
+                              RayCount& count) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
-  PointSample sample = sample_element(pool, visibility, link.source, link.receiver, s.flat ? 4 : 8,
-                                      s.flat ? 4 : 2, second, count);
+  std::array<SurfacePoint, 8> at;
+  const std::span<SurfacePoint> points(at.data(), s.flat ? 4 : 8);
+  pool.quadrature(link.source, points);
+  PointSample sample =
+      sample_points(pool, visibility, link.receiver, points, s.flat ? 4 : 2, link.source * 16, count);
   sample.received *= s.area / r.area;
   sample.unoccluded *= s.area / r.area;
   return sample;
@@ -566,7 +599,7 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
       pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
   (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
   if (receiver != source && reciprocity_helps(pool[receiver], pool[source])) {
-    const PointSample sample = sample_reciprocal(pool, visibility, link, false, ray_count);
+    const PointSample sample = sample_reciprocal(pool, visibility, link, ray_count);
     link.spread += std::abs(sample.received - link.mean);
     set_mean(link, sample.received);
     link.unoccluded = sample.unoccluded;
@@ -578,18 +611,20 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
 void resample_link(const ElementPool& pool, const Visibility& visibility, Link& link, RayCount& ray_count) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   if (link.receiver == link.source && r.kind == ElementKind::kVolume) return;
-  PointSample sample;
-  if (link.receiver != link.source && reciprocity_helps(r, s)) {
-    sample = sample_reciprocal(pool, visibility, link, true, ray_count);
-  } else {
-    const bool polygon = r.kind == ElementKind::kTriangle || r.kind == ElementKind::kPatch;
-    const uint32_t points = polygon ? 4 : 8;
-    sample = sample_element(pool, visibility, link.receiver, link.source, points, polygon ? 4 : 2, true,
-                            ray_count);
+  const bool from_source = link.receiver != link.source && reciprocity_helps(r, s);
+  const ElementId here = from_source ? link.source : link.receiver,
+                  there = from_source ? link.receiver : link.source;
+  const float turned = from_source ? s.area / r.area : 1.0f;
+  // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge.
+  std::array<SurfacePoint, kFreshPoints> at;
+  const uint32_t seed = hash(link.receiver, link.source);
+  for (uint32_t i = 0; i < kFreshPoints; ++i) {
+    const UnitSquarePoint uv = r2_point(i, seed);
+    at[i] = pool.sample_at(here, uv.u, uv.v);
   }
-  if (sample.unoccluded <= 0) return;
-  set_mean(link, sample.received);
-  link.unoccluded = sample.unoccluded;
+  const PointSample sample = sample_points(pool, visibility, there, at, kFreshRays, seed, ray_count);
+  link.unoccluded = turned * sample.unoccluded;
+  set_mean(link, turned * sample.received);
   finish(link, sample.received, sample.unoccluded, sample.rays);
 }
 

@@ -57,7 +57,8 @@ struct Element {
 /// A point on an element's real surface.
 struct SurfacePoint {
   vec3 position{0};
-  vec3 normal{0};  ///< unit, on the element's side
+  vec3 normal{0};         ///< unit, on the element's side
+  uint32_t triangle = 0;  ///< of the part's tree, for points on clusters and triangles
 };
 
 constexpr uint32_t kStoredSamples = 16;
@@ -103,6 +104,8 @@ class ElementPool {
   /// or behind.
   SurfacePoint sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
                               float& weight) const;
+  /// The deepest element below `id` that holds a point of it; a volume cluster is not searched.
+  ElementId deepest(ElementId id, const SurfacePoint& point) const;
   /// A direction within a sky element.
   vec3 sky_direction(ElementId id, float u, float v) const;
 

@@ -284,6 +284,44 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
   return sample_polygon(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)), u, v);
 }
 
+namespace {
+
+// How far `p` lies within a convex polygon of unit normal `n`; negative outside.
+float depth_within(const Polygon& polygon, const vec3& n, const vec3& p) {
+  float least = std::numeric_limits<float>::max();
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+    least = std::min(least, dot(cross(n, normalize_or(b - a, vec3(0))), p - a));
+  }
+  return least;
+}
+
+}  // namespace
+
+ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
+  while (elements_[id].first_child != kNoElement) {
+    const Element& e = elements_[id];
+    const ElementId child = e.first_child;
+    bool first = true;
+    if (e.kind == ElementKind::kCluster) {
+      const Element& c = elements_[child];
+      if (c.kind == ElementKind::kTriangle) {
+        first = c.shape == point.triangle;
+      } else {
+        const FaceCluster& node = set_->tree(set_->parts[e.part]).nodes[c.shape];
+        first = point.triangle - node.first < node.count;
+      }
+    } else if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
+      first = depth_within(polygon(child), point.normal, point.position) >=
+              depth_within(polygon(child + 1), point.normal, point.position);
+    } else {
+      return id;
+    }
+    id = first ? child : child + 1;
+  }
+  return id;
+}
+
 SurfacePoint ElementPool::sample_cluster(const Element& element, ClusterRef ref, float u, float v) const {
   const FaceClusterTree& tree = set_->tree(set_->parts[element.part]);
   const auto area_of = [&](ClusterRef r) {
@@ -305,7 +343,9 @@ SurfacePoint ElementPool::sample_cluster(const Element& element, ClusterRef ref,
 SurfacePoint ElementPool::sample_triangle(const Element& element, uint32_t triangle, float u, float v) const {
   const Polygon polygon = triangle_polygon(element, triangle);
   const vec3 n = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
-  return sample_polygon(polygon, normalize_or(n, vec3(0, 1, 0)), u, v);
+  SurfacePoint point = sample_polygon(polygon, normalize_or(n, vec3(0, 1, 0)), u, v);
+  point.triangle = triangle;
+  return point;
 }
 
 SurfacePoint ElementPool::sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const {
@@ -359,6 +399,7 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   const Element& element = elements_[id];
   Polygon polygon;
   float chance = 1;
+  uint32_t triangle = element.shape;
   if (element.kind == ElementKind::kPatch) {
     polygon = patch_polygon(element);
   } else if (element.kind == ElementKind::kTriangle) {
@@ -390,7 +431,8 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
       u = std::min((left ? u : u - share) / std::max(of, 1e-20f), 0.99999994f);
       chance *= of;
     }
-    polygon = triangle_polygon(element, triangle_of(ref));
+    triangle = triangle_of(ref);
+    polygon = triangle_polygon(element, triangle);
   }
   std::array<vec3, kMaxPolygon> from_x;
   for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
@@ -408,7 +450,8 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   const float plane = -dot(from_x[0], normal);
   if (plane <= 0) return {polygon.corners[0], normal};
   if (angle < kSmallSolidAngle) {
-    const SurfacePoint point = sample_polygon(polygon, normal, u, v);
+    SurfacePoint point = sample_polygon(polygon, normal, u, v);
+    point.triangle = triangle;
     const vec3 d = point.position - x;
     const float squared = dot(d, d);
     weight = std::max(0.0f, dot(d, n)) * plane * whole / (squared * squared * chance + 1e-30f);
@@ -421,7 +464,7 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   // polygon's end and into what stands there: it is drawn back by as much.
   const float drawn_back = 1 - std::min(0.1f, 2e-6f / towards);
   weight = std::max(0.0f, here) * angle / chance;
-  return {x + direction * (drawn_back * plane / towards), normal};
+  return {x + direction * (drawn_back * plane / towards), normal, triangle};
 }
 
 void ElementPool::expand_sky(ElementId id) {

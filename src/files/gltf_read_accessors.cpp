@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "files/gltf_read_container.h"
 #include "files/gltf_read_values.h"
@@ -168,7 +169,7 @@ Status AccessorReader::overlay_sparse(const tinygltf::Accessor& accessor, const 
                                       std::vector<T>& values, Convert convert) const {
   const auto& sparse = accessor.sparse;
   const ElementLayout layout(accessor);
-  const auto negative = [](int v) { return v < 0; };
+  const auto negative = [](auto v) { return std::cmp_less(v, 0); };  // newer tinygltf: offsets are size_t
   if (negative(sparse.count) || negative(sparse.indices.byteOffset) || negative(sparse.values.byteOffset) ||
       !is_unsigned_type(sparse.indices.componentType))
     return bad_input(file_, place, "its sparse part is malformed", kExportAgain);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solve/hierarchical/point_transfer.h"
+
 namespace goldthread {
 namespace {
 
@@ -27,7 +29,7 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
   float faced = 0, seen = 0;
   for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
     for (const Link& link : solver.links().into(id)) {
-      const vec3 b = seen_radiosity(pool, link, state.shown);
+      const vec3 b = seen_radiosity(link, solver.links().views(), state.shown);
       const float most = largest(b);
       if (most <= 0) continue;
       if ((link.mean + link.spread) * most < 0.1f * options.ray_share * whole) {
@@ -46,6 +48,7 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       const uint32_t count = rays_for(factor * most / (whole + factor * most), link, kind, options);
       float visible = static_cast<float>(link.visibility) / 255.0f;
       if (count > 0) visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays);
+      if (is_surface(kind)) visible = std::min(visible, 1 / factor);
       sum += visible * factor * b;
       if (kind == ElementKind::kPoint || kind == ElementKind::kSun) continue;
       faced += factor;

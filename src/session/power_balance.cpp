@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "math/colour.h"
+#include "solve/hierarchical/point_transfer.h"
 
 namespace goldthread {
 namespace {

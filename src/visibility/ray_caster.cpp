@@ -18,18 +18,6 @@ struct FilterData {
   std::vector<uint32_t> triangles;  // of the see-through geometry's primitives
 };
 
-#if GOLDTHREAD_EMBREE >= 4
-using RayContext = RTCRayQueryContext;
-void init_context(RayContext* context) {
-  rtcInitRayQueryContext(context);
-}
-#else
-using RayContext = RTCIntersectContext;
-void init_context(RayContext* context) {
-  rtcInitIntersectContext(context);
-}
-#endif
-
 // Embree asks this for every candidate hit on a see-through triangle; clearing `valid` lets the ray go on.
 void filter(const RTCFilterFunctionNArguments* args) {
   const auto* data = static_cast<const FilterData*>(args->geometryUserPtr);
@@ -51,8 +39,8 @@ void occluded1(RTCScene scene, RTCRay* ray) {
 #if GOLDTHREAD_EMBREE >= 4
   rtcOccluded1(scene, ray, nullptr);
 #else
-  RayContext context;
-  init_context(&context);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, ray);
 #endif
 }
@@ -61,8 +49,8 @@ void intersect1(RTCScene scene, RTCRayHit* hit) {
 #if GOLDTHREAD_EMBREE >= 4
   rtcIntersect1(scene, hit, nullptr);
 #else
-  RayContext context;
-  init_context(&context);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, hit);
 #endif
 }
@@ -71,8 +59,8 @@ void occluded16(RTCScene scene, const int* valid, RTCRay16* rays) {
 #if GOLDTHREAD_EMBREE >= 4
   rtcOccluded16(valid, scene, rays, nullptr);
 #else
-  RayContext context;
-  init_context(&context);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
   rtcOccluded16(valid, scene, &context, rays);
 #endif
 }

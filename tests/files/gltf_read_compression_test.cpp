@@ -131,7 +131,11 @@ TEST(Meshopt, FiltersAreUndone) {
   meshopt_encodeFilterOct(octahedral.data(), 4, 4, 8, normals[0]);
   const float texcoords[8] = {0, 0.5f, 1, 0.25f, 3, -2, 0.125f, 8};
   std::vector<uint32_t> exponential(8);
+#if MESHOPTIMIZER_VERSION >= 190
+  meshopt_encodeFilterExp(exponential.data(), 4, 8, 15, texcoords, meshopt_EncodeExpSharedVector);
+#else
   meshopt_encodeFilterExp(exponential.data(), 4, 8, 15, texcoords);
+#endif
   const int normal_view =
       meshopt_view(b, encoded_vertices(octahedral.data(), 4, 4), 4, 4, "ATTRIBUTES", "OCTAHEDRAL");
   const int uv_view =

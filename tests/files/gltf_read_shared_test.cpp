@@ -1,6 +1,7 @@
 // Real files: every model of the shared folder, against the table beside them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "files/scene_read.h"

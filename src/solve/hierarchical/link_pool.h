@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "solve/hierarchical/transfer.h"
+#include "solve/hierarchical/link.h"
 
 namespace goldthread {
 
@@ -12,6 +12,10 @@ class LinkPool {
  public:
   std::vector<Link>& all() { return links_; }
   const std::vector<Link>& all() const { return links_; }
+
+  /// What the links' `view` numbers stand for.
+  std::vector<SourceView>& views() { return views_; }
+  const std::vector<SourceView>& views() const { return views_; }
 
   /// Drops dead links and orders the rest by receiver, keeping the order within one. `elements` is the pool's
   /// size.
@@ -23,11 +27,13 @@ class LinkPool {
   }
 
   uint64_t memory_bytes() const {
-    return links_.capacity() * sizeof(Link) + first_.capacity() * sizeof(uint64_t);
+    return links_.capacity() * sizeof(Link) + views_.capacity() * sizeof(SourceView) +
+           first_.capacity() * sizeof(uint64_t);
   }
 
  private:
   std::vector<Link> links_;
+  std::vector<SourceView> views_;
   std::vector<uint64_t> first_;  // per element, one more at the end
 };
 

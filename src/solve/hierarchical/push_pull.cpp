@@ -106,7 +106,7 @@ struct Sweep {
         octants.seen += link.mean;
       }
       if (link.mean <= 0) continue;
-      const vec3 b = seen_radiosity(pool, link, old);
+      const vec3 b = seen_radiosity(link, links.views(), old);
       octants.add(link.transfer, link.ambient, b);
       direct += link.mean * b;
     }
@@ -131,7 +131,7 @@ struct Sweep {
         faced += link.unoccluded;
         seen += link.mean;
       }
-      if (link.mean > 0) field.add(link, seen_radiosity(pool, link, old));
+      if (link.mean > 0) field.add(link, seen_radiosity(link, links.views(), old));
     }
     if (e.first_child == kNoElement) {
       const vec3 n = e.summed_normal / std::max(e.area, 1e-30f);

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
+#include "math/spherical_triangle.h"
 
 namespace goldthread {
 namespace {
@@ -17,23 +18,43 @@ bool is_light(ElementKind kind) {
 // Share of what could pass between two touching elements that counts as error.
 constexpr double kNearError = 0.02;
 
-// The share of the scene's area below which a receiver's link to an uneven source counts no less.
-constexpr double kSourceShare = 0.03;
-
 // Share of what a curved receiver could get that counts as error, times how far its normals disagree.
 constexpr double kTurnError = 0.1;
+
+// Standard error of a link's power, in bounds of its error, that is good enough: errors of thousands of links
+// cancel.
+constexpr double kNoise = 0.5;
 
 // How much of an element's area cancels in its summed normal: 0 for a plane, 1 for a closed object.
 double turned_share(const Element& e) {
   return e.area > 0 ? std::max(0.0, 1 - static_cast<double>(length(e.summed_normal) / e.area)) : 0;
 }
 
-// A form factor that the samples may have missed: what a source of this size could have at this distance.
-double likely_factor(const Element& r, const Element& s, double sampled) {
-  if (s.kind > ElementKind::kPatch) return sampled;
+// A form factor that the samples may have missed: what a source of this size could have at this distance, as
+// far as the rays that were cast do not say that it is hidden.
+double likely_factor(const ElementPool& pool, const Link& link) {
+  const Element &r = pool[link.receiver], &s = pool[link.source];
   const vec3 apart = s.centre - r.centre;
-  const double squared = static_cast<double>(dot(apart, apart)), area = static_cast<double>(s.area);
-  return std::max(sampled, 0.5 * area / (3.14159 * squared + area));
+  const double squared = static_cast<double>(dot(apart, apart));
+  double most = 0;
+  switch (s.kind) {
+    case ElementKind::kSun:
+      most = 1;
+      break;
+    case ElementKind::kPoint:
+      most = 1 / std::max(squared, static_cast<double>(r.radius * r.radius));
+      break;
+    case ElementKind::kSky: {
+      const std::array<vec3, 3>& c = pool.sky_corners(link.source);
+      most = static_cast<double>(solid_angle(c[0], c[1], c[2]) / kPi);
+      break;
+    }
+    default:
+      most = static_cast<double>(s.area) / (3.14159 * squared + static_cast<double>(s.area));
+  }
+  // The share of the rays that arrive, were one more to arrive of two more (Laplace).
+  const double seen = (link.visibility / 255.0 * link.rays + 1) / (link.rays + 2.0);
+  return std::max(static_cast<double>(link.unoccluded), most * seen);
 }
 
 bool divisible(const Element& e) {
@@ -58,7 +79,7 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
   const LinkError error = estimate_error(pool, state, link);
-  if (error.weighed() <= options.power_error) return Decision::kKeep;
+  if (error.total() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area),
              source = may_open_source(s, options.least_area);
   if (self) return receiver ? Decision::kBoth : Decision::kKeep;
@@ -68,7 +89,7 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const bool r_box = r.kind == ElementKind::kVolume, s_box = s.kind == ElementKind::kVolume;
   if (r_box != s_box) return r_box ? Decision::kReceiver : Decision::kSource;
   if (r_box) return r.radius >= s.radius ? Decision::kReceiver : Decision::kSource;
-  const double from_source = error.source * error.source_weight;
+  const double from_source = error.source;
   if (error.receiver >= from_source)
     return receiver ? Decision::kReceiver
                     : (from_source > options.power_error ? Decision::kSource : Decision::kKeep);
@@ -130,26 +151,6 @@ void list_children(const ElementPool& pool, const Link& link, Decision decision,
   }
 }
 
-// Weighs the halves of sources that are unevenly bright and have been opened since their links were made.
-void split_sources(const ElementPool& pool, const RadiosityState& state, std::vector<Link>& links,
-                   const RefineOptions& options) {
-  parallel_for(
-      links.size(),
-      [&](size_t i) {
-        Link& link = links[i];
-        const Element& s = pool[link.source];
-        if (!link.alive || link.front_share >= 0 || s.first_child == kNoElement || link.mean <= 0) return;
-        if (s.kind == ElementKind::kVolume || s.kind == ElementKind::kSky || link.receiver == link.source)
-          return;
-        const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-        const double area =
-            static_cast<double>(std::max(pool[link.receiver].area, 0.01f * pool[pool.root()].area));
-        if (range * static_cast<double>(link.mean) * area > 0.05 * options.power_error)
-          split_source(pool, link);
-      },
-      64);
-}
-
 // Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes
 // kKeep: its link comes up again in the next wave with the other side.
 void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
@@ -166,6 +167,13 @@ void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   pool.expand(wanted);
   state.grow_to(pool);
+}
+
+// Whether what is seen of a link's source may well be brighter or darker than its mean.
+bool is_uneven(const ElementPool& pool, const RadiosityState& state, const Link& link) {
+  const Element& s = pool[link.source];
+  if (s.first_child == kNoElement || s.kind == ElementKind::kVolume || !is_surface(s.kind)) return false;
+  return state.high[link.source] - state.low[link.source] > 0.02f * state.high[link.source];
 }
 
 }  // namespace
@@ -203,22 +211,13 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   }
   // A receiver that turns many ways: few samples may all look away, and such links would be kept just because
   // of that.
-  if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(r, s, unoccluded);
+  if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(pool, link);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
   const double missed = unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (1.0 * static_cast<double>(link.spread) + missed);
-  double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-  if (link.front_share >= 0) {
-    const ElementId c = s.first_child;
-    range = 0.5 *
-            static_cast<double>(std::max(state.high[c] - state.low[c], state.high[c + 1] - state.low[c + 1]));
-  }
-  // Light is brighter where it comes nearer, so a source taken as even errs to one side for every receiver:
-  // small receivers do not make that error small, as they do random ones.
-  const double least = kSourceShare * static_cast<double>(pool[pool.root()].area);
+  const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;
-  error.source_weight = std::max(1.0, least / std::max(area, 1e-300));
   if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
   return error;
@@ -233,7 +232,6 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   for (size_t i = 0; i < active.size(); ++i) active[i] = i;
   std::vector<Decision> decisions;
   std::vector<Child> children;
-  split_sources(pool, state, all, options);
   while (!active.empty() && !cancel.cancelled()) {
     decisions.assign(active.size(), Decision::kKeep);
     parallel_for(
@@ -286,27 +284,32 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   return counters;
 }
 
-void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
-              const CancelToken& cancel, RayCount& total_rays) {
+void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
+                 const RadiosityState& state, double power_error, const CancelToken& cancel,
+                 RayCount& total_rays) {
   std::vector<Link>& all = links.all();
+  uint32_t views = 0;
+  for (Link& link : all) link.view = is_uneven(pool, state, link) ? views++ : kNoView;
+  links.views().resize(views);
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(
       all.size(),
       [&](size_t i) {
-        if (cancel.cancelled()) return;
+        if (cancel.cancelled()) {
+          all[i].view = kNoView;
+          return;
+        }
         RayCount cast;
-        resample_link(pool, visibility, all[i], cast);
+        Link& link = all[i];
+        const double power = static_cast<double>(largest(state.shown[link.source]) * pool[link.receiver].area);
+        const auto tolerance = static_cast<float>(kNoise * power_error / std::max(power, 1e-300));
+        measure_link(pool, visibility, link, tolerance,
+                     link.view != kNoView ? &links.views()[link.view] : nullptr, cast);
         rays.fetch_add(cast.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);
       },
       64);
   total_rays += {rays.load(), nanoseconds.load()};
-}
-
-double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links) {
-  double sum = 0;
-  for (const Link& link : links.all()) sum += estimate_error(pool, state, link).total();
-  return sum;
 }
 
 }  // namespace goldthread

@@ -24,10 +24,7 @@ struct RefineCounters {
 struct LinkError {
   double receiver = 0;  ///< transfer or visibility varies over the receiver
   double source = 0;    ///< radiosity varies over the source
-  double source_weight =
-      1;  ///< by how much the source's part counts more when deciding, since it errs to one side
   double total() const { return receiver + source; }
-  double weighed() const { return receiver + source * source_weight; }
 };
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 
@@ -38,11 +35,9 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
                       const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
                       const std::function<void()>& between_waves);
 
-/// Measures all links anew (resample_link), once no more will be refined. Rays are added to `rays`.
-void resample(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
-              const CancelToken& cancel, RayCount& rays);
-
-/// The sum of the estimated errors over all links, lm.
-double total_error(const ElementPool& pool, const RadiosityState& state, const LinkPool& links);
+/// Measures all links anew, once no more will be refined, and looks at which places of uneven sources they see
+/// (measure_link). `power_error` as in RefineOptions. Rays are added to `rays`.
+void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
+                 const RadiosityState& state, double power_error, const CancelToken& cancel, RayCount& rays);
 
 }  // namespace goldthread

@@ -52,7 +52,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
       refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
-  if (last) resample(pool_, visibility_, links_, cancel, stats_.rays);
+  if (last) measure_all(pool_, visibility_, links_, state_, refine_options.power_error, cancel, stats_.rays);
   // The first steps only have to find where the light goes; the last has to settle.
   sweep(last ? 400 : 3, last ? options_.settled : 30 * options_.settled, cancel);
   if (cancel.cancelled()) return false;

@@ -1,5 +1,7 @@
 // What arrives at points and what links say of it.
-#include "solve/hierarchical/transfer.h"
+#include "solve/hierarchical/link.h"
+
+#include "solve/hierarchical/point_transfer.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,0 +1,161 @@
+#include "solve/hierarchical/source_rays.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/rng.h"
+
+namespace goldthread {
+namespace {
+
+// Squared distance over squared radius below which a source is sampled by solid angle instead of by area.
+constexpr float kNearSource = 6;
+
+// Reaches from surface to surface without touching either.
+Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const vec3& to_normal,
+                float epsilon) {
+  Ray ray;
+  ray.origin = from + epsilon * from_normal;
+  ray.direction = to + epsilon * to_normal - ray.origin;
+  ray.near = 0;
+  // Ends short of the target by what its surface may stand out beside it; at closer quarters nothing fits
+  // between.
+  const float distance = length(ray.direction);
+  ray.far = distance > 4 * epsilon ? 1 - 2 * epsilon / distance : 0.0f;
+  return ray;
+}
+
+uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCount& count) {
+  const auto start = std::chrono::steady_clock::now();
+  const uint32_t blocked = caster.occluded_packet(rays);
+  const auto time = std::chrono::steady_clock::now() - start;
+  count.rays += rays.size();
+  count.nanoseconds +=
+      static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  return blocked;
+}
+
+}  // namespace
+
+namespace {
+
+// Draws points of a source as one point sees them.
+struct SourceSampler {
+  const ElementPool& pool;
+  const ElementId source;
+  const vec3 x, n;
+  const float epsilon;
+  const uint32_t turn;
+  const Element& e = pool[source];
+  const vec3 way = e.centre - x;
+  const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume &&
+                    dot(way, way) < kNearSource * e.radius * e.radius;
+
+  // Of what turns many ways, or sinks below the horizon, most points may be out of sight.
+  bool hides_itself() const {
+    return e.kind == ElementKind::kVolume || (e.kind == ElementKind::kCluster && !e.flat) ||
+           e.kind == ElementKind::kSky || dot(way, n) < e.radius;
+  }
+
+  // Point i, a ray to it, and what it brings: on surfaces, the mean over all i is the form factor.
+  float draw(uint32_t i, Ray& ray, SurfacePoint& y) const {
+    const UnitSquarePoint uv = r2_point(i, turn);
+    if (e.kind == ElementKind::kSky) {
+      ray = {x + epsilon * n, pool.sky_direction(source, uv.u, uv.v)};
+      return std::max(0.0f, dot(ray.direction, n));
+    }
+    float weight = 0;
+    if (near) {
+      y = pool.sample_towards(source, x, n, uv.u, uv.v, weight);
+    } else {
+      // Not one of the stored samples: the same sixteen for all receivers would err the same way for all.
+      y = pool.sample_at(source, uv.u, uv.v);
+      const vec3 d = y.position - x;
+      const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
+      if (here <= 0 || there <= 0) return 0;
+      // The disc of area pi r^2 bounds what a point of a volume cluster that happens to lie close may bring.
+      weight = here * there * e.area / (squared * (squared + (e.kind == ElementKind::kVolume ? e.area : 0.0f)));
+    }
+    if (weight > 0) ray = ray_between(x, n, y.position, y.normal, epsilon);
+    return weight / kPi;
+  }
+};
+
+constexpr uint32_t kPacket = 16;
+
+}  // namespace
+
+SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
+                           uint32_t rays, uint32_t seed, RayCount& count, SeenPoints* places) const {
+  const SourceSampler sampler{pool, source, x, n, epsilon, hash(seed, source)};
+  const bool hides = sampler.hides_itself();
+  const bool keep = places != nullptr && is_surface(sampler.e.kind);
+  SeenShare sum;
+  std::array<Ray, kPacket> found, packet;
+  std::array<SurfacePoint, kPacket> at;
+  std::array<float, kPacket> weight, share;
+  std::array<uint32_t, kPacket> chosen;
+  for (uint32_t first = 0; first < rays; first += kPacket) {
+    const uint32_t batch = std::min(kPacket, rays - first);
+    // Of two or three drawn blindly often all would bring nothing: then more are looked at, and rays go to
+    // them in proportion to what they would bring.
+    const uint32_t looked = hides ? kPacket : batch;
+    uint32_t size = 0;
+    float all = 0;
+    for (uint32_t i = 0; i < looked; ++i) {
+      weight[size] = sampler.draw(first + i, found[size], at[size]);
+      if (weight[size] > 0) all += weight[size++];
+    }
+    if (size == 0) continue;
+    const uint32_t cast = hides ? batch : size;
+    const float start = unit_float(hash(sampler.turn, first));
+    float up_to = weight[0];
+    for (uint32_t k = 0, next = 0; k < cast; ++k) {
+      if (hides) {
+        share[k] = all / static_cast<float>(cast);
+        for (const float target = share[k] * (static_cast<float>(k) + start); up_to < target && next + 1 < size;)
+          up_to += weight[++next];
+        chosen[k] = next;
+      } else {
+        share[k] = weight[k];
+        chosen[k] = k;
+      }
+      packet[k] = found[chosen[k]];
+      share[k] *= static_cast<float>(batch) / static_cast<float>(looked * rays);
+    }
+    const uint32_t blocked = timed_packet(*caster, {packet.data(), cast}, count);
+    for (uint32_t k = 0; k < cast; ++k) {
+      ((blocked >> k & 1) != 0 ? sum.hidden : sum.seen) += share[k];
+      if ((blocked >> k & 1) != 0 || !keep || places->count == SeenPoints::kMost) continue;
+      places->points[places->count] = at[chosen[k]];
+      places->weights[places->count++] = share[k];
+    }
+  }
+  return sum;
+}
+
+float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
+                           uint32_t rays, uint32_t seed, RayCount& count) const {
+  const Element& e = pool[source];
+  const vec3 origin = x + epsilon * n;
+  if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
+    Ray ray{origin, -pool.surfaces().scene->lights[e.shape].direction};
+    if (e.kind == ElementKind::kPoint) {
+      ray.direction = e.centre - origin;
+      ray.far = 0.9999f;
+    }
+    return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
+  }
+  const SeenShare share = look(pool, source, x, n, rays, seed, count);
+  if (share.seen + share.hidden > 0) return share.seen / (share.seen + share.hidden);
+  // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
+  if (e.kind == ElementKind::kSky) return 0;
+  const vec3 to_centre = e.centre - origin;
+  const float distance = length(to_centre);
+  if (distance <= 1.01f * e.radius) return 0;
+  Ray ray{origin, to_centre};
+  ray.far = 1 - 1.01f * e.radius / distance;
+  return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,52 @@
+// Rays from points to sources: how much of them is seen, and which places.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "element/element_pool.h"
+#include "visibility/ray_caster.h"
+
+namespace goldthread {
+
+/// Rays cast, and the time that took, summed over threads.
+struct RayCount {
+  uint64_t rays = 0;
+  uint64_t nanoseconds = 0;
+  void operator+=(const RayCount& other) {
+    rays += other.rays;
+    nanoseconds += other.nanoseconds;
+  }
+};
+
+/// Places of a source that a point sees, each with what it brings.
+struct SeenPoints {
+  static constexpr uint32_t kMost = 16;
+  std::array<SurfacePoint, kMost> points;
+  std::array<float, kMost> weights;
+  uint32_t count = 0;
+};
+
+/// Form factors of what rays saw of a source and of what was hidden from them. The mean of their sum is the
+/// unoccluded form factor; of the sky only their ratio means anything.
+struct SeenShare {
+  float seen = 0, hidden = 0;
+};
+
+/// Rays between points and elements.
+struct Visibility {
+  const RayCaster* caster = nullptr;  ///< borrowed
+  float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
+
+  /// Casts `rays` (1..64) rays from `x` with unit normal `n` to points on the real triangles of `source`, or
+  /// into the sky. `seed` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
+  /// places where they arrived to `places` (surfaces only), if given. Not for point lights and suns.
+  SeenShare look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
+                 uint32_t seed, RayCount& count, SeenPoints* places = nullptr) const;
+
+  /// Share of `source` seen from `x`, 0..1. A ratio of two sums over few rays: less noisy than `look`, and a
+  /// little biased.
+  float fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
+                 uint32_t seed, RayCount& count) const;
+};
+
+}  // namespace goldthread

@@ -407,18 +407,21 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
   } else {
     const Part& part = set_->parts[element.part];
     const FaceClusterTree& tree = set_->tree(part);
-    // By area over squared distance, as far as that can be told from centres.
+    // By area over squared distance, as far as that can be told from centres. In the tree's own space, which
+    // is similar to the world: only ratios count.
+    const mat3 linear(part.to_world);
+    const vec3 local = (x - vec3(part.to_world[3])) * linear / dot(linear[0], linear[0]);
     const auto pull = [&](ClusterRef ref) {
       if (is_triangle(ref)) {
         const UVec3& c = tree.mesh.triangles[triangle_of(ref)];
-        const vec3 &p = part.positions[c.x], &q = part.positions[c.y], &r = part.positions[c.z];
-        const vec3 d = (p + q + r) / 3.0f - x;
-        return length(area_vector(p, q, r)) / (dot(d, d) + 0.25f * dot(q - p, q - p));
+        const vec3 &p = tree.mesh.positions[c.x], &q = tree.mesh.positions[c.y],
+                   &r = tree.mesh.positions[c.z];
+        const vec3 d = (p + q + r) / 3.0f - local;
+        return 0.5f * length(cross(q - p, r - p)) / (dot(d, d) + 0.25f * dot(q - p, q - p));
       }
       const FaceCluster& node = tree.nodes[ref];
-      const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - x;
-      const float scale = part.scale * part.scale;
-      return node.area * scale / (dot(d, d) + 0.25f * node.radius * node.radius * scale);
+      const vec3 d = node.centre - local;
+      return node.area / (dot(d, d) + 0.25f * node.radius * node.radius);
     };
     ClusterRef ref = element.shape;
     while (!is_triangle(ref)) {

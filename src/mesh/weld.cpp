@@ -157,7 +157,9 @@ void keep_sound(TriangleMesh& mesh, std::span<const uint32_t> indices, std::span
 void drop_duplicates(TriangleMesh& mesh) {
   const std::vector<uint32_t> first = find_equal(
       mesh.triangles.size(), [&](size_t i) { return turned(mesh.triangles[i]); },
-      [](const UVec3& t) { return hash_of(PositionBits{t.x, t.y, t.z}); });
+      [](const UVec3& t) {
+        return hash_of(PositionBits{t.x, t.y, t.z});
+      });
   std::vector<uint32_t> number(mesh.triangles.size());
   size_t kept = 0;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -200,8 +202,8 @@ void keep_used_positions(TriangleMesh& mesh, std::span<const vec3> positions) {
 
 TriangleMesh weld(std::span<const vec3> positions, std::span<const uint32_t> indices) {
   TriangleMesh mesh;
-  const std::vector<uint32_t> first_equal =
-      find_equal(positions.size(), [&](size_t i) { return bits_of(positions[i]); }, hash_of);
+  const std::vector<uint32_t> first_equal = find_equal(
+      positions.size(), [&](size_t i) { return bits_of(positions[i]); }, hash_of);
   const std::vector<Soundness> soundness = judge_all(positions, indices, first_equal);
   mesh.skipped.not_finite = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kNotFinite));
   mesh.skipped.degenerate = uint64_t(std::count(soundness.begin(), soundness.end(), Soundness::kDegenerate));

@@ -46,8 +46,8 @@ std::vector<std::string> describe_problems(const SurfaceSet& surfaces) {
     lines.push_back(fmt::format("{} triangles with corners that are not finite were skipped",
                                 surfaces.skipped.not_finite));
   if (surfaces.skipped.duplicate > 0)
-    lines.push_back(fmt::format("{} triangles that lie twice in the file are lit as one",
-                                surfaces.skipped.duplicate));
+    lines.push_back(
+        fmt::format("{} triangles that lie twice in the file are lit as one", surfaces.skipped.duplicate));
   if (surfaces.clamped_materials > 0)
     lines.push_back(fmt::format("{} materials reflect more than {} and were clamped to that",
                                 surfaces.clamped_materials, kMaxReflectance));

@@ -14,8 +14,9 @@ namespace {
 TriangleMesh weld_valid(const shapes::Soup& soup) {
   TriangleMesh mesh = soup.weld();
   validate(mesh);
-  EXPECT_EQ(mesh.triangles.size() + mesh.skipped.not_finite + mesh.skipped.degenerate,
-            soup.indices.size() / 3);
+  EXPECT_EQ(
+      mesh.triangles.size() + mesh.skipped.not_finite + mesh.skipped.degenerate + mesh.skipped.duplicate,
+      soup.indices.size() / 3);
   return mesh;
 }
 
@@ -47,6 +48,21 @@ TEST(Weld, SkipsWhatHasNoAreaOrNoPlace) {
   EXPECT_EQ(mesh.skipped.degenerate, 2u);  // on a line up to rounding, and two corners the same
   EXPECT_EQ(mesh.skipped.not_finite, 3u);  // NaN, infinity, and an area beyond the numbers
   EXPECT_EQ(mesh.source_triangles, (std::vector<uint32_t>{5}));
+}
+
+TEST(Weld, KeepsOneOfEqualTriangles) {
+  shapes::Soup soup;
+  // The same square thrice: split vertices, turned corners, and once seen from the other side.
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  soup.indices = {0, 1, 2, 0, 2, 3, 5, 6, 4, 7, 4, 6, 2, 1, 0, 3, 2, 0};
+  const TriangleMesh mesh = weld_valid(soup);
+  EXPECT_EQ(mesh.source_triangles, (std::vector<uint32_t>{0, 1, 4, 5}));  // the back is no copy
+  EXPECT_EQ(mesh.skipped.duplicate, 2u);
+  ASSERT_EQ(mesh.duplicates.size(), 2u);
+  for (const DuplicateTriangle& d : mesh.duplicates)
+    for (uint32_t k = 0; k < 3; ++k)
+      EXPECT_EQ(soup.positions[soup.indices[3 * d.source + k]],
+                mesh.positions[mesh.triangles[d.twin][int(k + d.turn) % 3]]);
 }
 
 TEST(Weld, KeepsVerySmallAndVeryThinTriangles) {

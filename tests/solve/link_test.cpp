@@ -22,11 +22,11 @@ ElementId surface_of_part(const ElementPool& pool, uint32_t part) {
 }
 
 /// The sum over the real triangles of a surface, each by Lambert's formula.
-vec3 exact_transfer(const Elements& elements, ElementId surface, const vec3& x, const vec3& n) {
-  const Element& e = (*elements.pool)[surface];
-  const Part& part = elements.set->parts[e.part];
+vec3 exact_transfer(const ElementPool& pool, ElementId surface, const vec3& x, const vec3& n) {
+  const Element& e = pool[surface];
+  const Part& part = pool.surfaces().parts[e.part];
   vec3 sum(0);
-  for (const UVec3& t : elements.set->tree(part).mesh.triangles) {
+  for (const UVec3& t : pool.surfaces().tree(part).mesh.triangles) {
     std::array<vec3, 3> corners{part.positions[t.x], part.positions[t.y], part.positions[t.z]};
     if ((part.winding < 0) != e.back) std::swap(corners[1], corners[2]);
     sum += polygon_form_factor(x, n, corners);
@@ -47,7 +47,7 @@ RC_GTEST_PROP(PointTransfer, AClusterIsTheSumOfItsTriangles, (uint32_t seed)) {
   for (const ElementId surface : elements.pool->surface_roots()) {
     for (int i = 0; i < 20; ++i) {
       const vec3 x = random.in(0.05f, 4) * random.direction(), n = random.direction();
-      const vec3 exact = exact_transfer(elements, surface, x, n);
+      const vec3 exact = exact_transfer(*elements.pool, surface, x, n);
       const vec3 m = point_transfer(*elements.pool, surface, x, n);
       // Each piece may err by 4e-4 of a form factor, and their errors are of either sign.
       RC_ASSERT(std::abs(dot(m - exact, n)) < 0.01f + 0.03f * dot(exact, n));
@@ -62,7 +62,7 @@ TEST(PointTransfer, FarClustersAreExactInTheLimit) {
   const ElementId surface = elements.pool->surface_roots()[0];
   for (const float distance : {3.0f, 10.0f, 100.0f}) {
     const vec3 x = vec3(0.5f, 0.5f, 0) + distance * normalize(vec3(0.2f, 0.3f, 1)), n(0, 0, -1);
-    const float exact = dot(exact_transfer(elements, surface, x, n), n);
+    const float exact = dot(exact_transfer(*elements.pool, surface, x, n), n);
     EXPECT_NEAR(dot(point_transfer(*elements.pool, surface, x, n), n) / exact, 1, 0.01f) << distance;
   }
 }
@@ -178,6 +178,56 @@ TEST(Visibility, HalfASourceBehindAScreen) {
     sum += double(seen) / 200;
   }
   EXPECT_NEAR(sum, 0.5, 0.02);
+}
+
+TEST(Visibility, TwoRaysAreRightOnTheAverage) {
+  // A closed, curved source close by, half of it behind a screen and half of it its own back: what two rays
+  // see and what is hidden from them adds up to Lambert's formula, and the screen hides half.
+  Scene scene;
+  const uint32_t paint = test::add(scene, test::diffuse(0.5f));
+  test::add(scene, shapes::sphere(12), paint, test::move({0, 0, 1.5f}));
+  test::add(scene, test::parallelogram({0, -3, 0.2f}, {3, 0, 0}, {0, 6, 0}), paint);
+  test::Solved solved(std::move(scene));
+  const ElementId ball = surface_of_part(solved.pool(), 0);
+  const vec3 x(0), n(0, 0, 1);
+  const float all = dot(n, exact_transfer(solved.pool(), ball, x, n));
+  double seen = 0, hidden = 0;
+  constexpr uint32_t kSeeds = 4000;
+  for (uint32_t seed = 0; seed < kSeeds; ++seed) {
+    RayCount rays;
+    const SeenShare share = solved.solver->visibility().look(solved.pool(), ball, x, n, 2, seed, rays);
+    seen += double(share.seen) / kSeeds;
+    hidden += double(share.hidden) / kSeeds;
+  }
+  EXPECT_NEAR((seen + hidden) / double(all), 1, 0.03);
+  EXPECT_NEAR(seen / double(all), 0.5, 0.03);
+}
+
+TEST(Link, ItsViewHoldsOnlyWhatIsSeen) {
+  // As above; the solution has cut the panel.
+  Scene scene;
+  test::add(scene, test::parallelogram({-1, -1, 2}, {0, 2, 0}, {2, 0, 0}, 4),
+            test::add(scene, test::diffuse(0.5f, 1)));
+  const uint32_t paint = test::add(scene, test::diffuse(0.5f));
+  test::add(scene, test::parallelogram({0, -3, 1}, {3, 0, 0}, {0, 6, 0}), paint);
+  test::add(scene, test::parallelogram({-0.05f, -0.05f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}), paint);
+  test::Solved solved(std::move(scene));
+  solved.solve();
+  const ElementPool& pool = solved.pool();
+  const ElementId panel = surface_of_part(pool, 0), floor = surface_of_part(pool, 2);
+  ASSERT_NE(pool[panel].first_child, kNoElement);
+  RayCount rays;
+  Link link = make_link(pool, solved.solver->visibility(), floor, panel, 8, 4, rays);
+  std::vector<SourceView> views(1);
+  measure_link(pool, solved.solver->visibility(), link, 0.001f, views.data(), rays);
+  link.view = 0;
+  std::vector<vec3> shown(pool.size(), vec3(0));
+  for (const ElementId id : solved.leaves())
+    if (pool[id].centre.x > 0.2f) shown[id] = vec3(1);  // bright where nobody sees it
+  EXPECT_EQ(seen_radiosity(link, views, shown), vec3(0));
+  for (const ElementId id : solved.leaves()) shown[id] = vec3(pool[id].centre.x < 0.2f ? 3.0f : 0.0f);
+  EXPECT_EQ(seen_radiosity(link, views, shown), vec3(3));
+  EXPECT_NEAR(link.mean / link.unoccluded, 0.5f, 0.1f);
 }
 
 TEST(LightDistribution, SpotFallsFromInnerToOuterCone) {

@@ -177,7 +177,7 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
 }
 
 // Of the last measurement of links.
-constexpr uint32_t kFreshPoints = 8, kMostPoints = 64, kFreshRays = 2;
+constexpr uint32_t kFreshPoints = 8, kMostPoints = 128, kFreshRays = 2;
 
 // Gives a link another mean, keeping the shape of its light over the receiver if there was any to speak of.
 void set_mean(Link& link, float mean) {
@@ -198,7 +198,8 @@ PointSample sample_points(const ElementPool& pool, const Visibility& visibility,
   PointSample sum;
   const auto points = static_cast<float>(at.size());
   for (uint32_t i = 0; i < at.size(); ++i) {
-    const PointSample sample = sample_point(pool, visibility, towards, at[i], rays_per_point, seed + i, count);
+    const PointSample sample =
+        sample_point(pool, visibility, towards, at[i], rays_per_point, seed + i, count);
     sum.received += sample.received / points;
     sum.unoccluded += sample.unoccluded / points;
     sum.rays += sample.rays;
@@ -294,7 +295,8 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   const float turned = from_source ? s.area / r.area : 1.0f;
   const uint32_t seed = hash(link.receiver, link.source);
   SeenElements places;
-  const bool form_factors = is_surface(s.kind) && s.kind != ElementKind::kVolume && r.kind != ElementKind::kVolume;
+  const bool form_factors =
+      is_surface(s.kind) && s.kind != ElementKind::kVolume && r.kind != ElementKind::kVolume;
   // How many points it takes is told by the first samples, never by these: to stop where they happen to agree
   // would lose light again.
   const float likely = (link.visibility / 255.0f * link.rays + 0.5f) / (link.rays + 1.0f);
@@ -308,20 +310,29 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge.
     const UnitSquarePoint uv = r2_point(i, seed);
     const SurfacePoint x = pool.sample_at(here, uv.u, uv.v);
-    const vec3 m = point_transfer(pool, there, x.position, x.normal);
-    const float factor = std::max(0.0f, dot(m, x.normal));
-    unoccluded += factor;
-    if (factor <= 0) continue;
     const uint64_t before = ray_count.rays;
     SeenPoints seen;
     float arriving = 0;
-    if (form_factors) {
-      const SeenShare share = visibility.look(pool, there, x.position, x.normal, kFreshRays, seed + i, ray_count,
-                                              view != nullptr ? &seen : nullptr);
-      // Either is right on the average; the one that is likely to be small has little to be wrong about.
-      arriving = likely > 0.5f ? factor - share.hidden : share.seen;
+    // Either way of counting is right on the average; the one that is likely to be small has little to be
+    // wrong about.
+    if (form_factors && likely <= 0.5f) {
+      const SeenShare share = visibility.look(pool, there, x.position, x.normal, kFreshRays, seed + i,
+                                              ray_count, view != nullptr ? &seen : nullptr);
+      arriving = share.seen;
+      unoccluded += share.seen + share.hidden;
     } else {
-      arriving = factor * visibility.fraction(pool, there, x.position, x.normal, kFreshRays, seed + i, ray_count);
+      const vec3 m = point_transfer(pool, there, x.position, x.normal);
+      const float factor = std::max(0.0f, dot(m, x.normal));
+      unoccluded += factor;
+      if (factor <= 0) continue;
+      if (form_factors) {
+        const SeenShare share = visibility.look(pool, there, x.position, x.normal, kFreshRays, seed + i,
+                                                ray_count, view != nullptr ? &seen : nullptr);
+        arriving = factor - share.hidden;
+      } else {
+        arriving =
+            factor * visibility.fraction(pool, there, x.position, x.normal, kFreshRays, seed + i, ray_count);
+      }
     }
     received += arriving;
     rays += static_cast<uint32_t>(ray_count.rays - before);

@@ -26,19 +26,19 @@ struct Link {
   /// part: p gets ambient + dot(p - centre, transfer), transfer being the gradient.
   vec3 transfer{0};
   float ambient = 0;
-  float mean = 0;        ///< mean over the receiver's real triangles: irradiance per unit radiosity
-  float spread = 0;      ///< largest deviation of a sample from what transfer and ambient say of it
-  float unoccluded = 0;  ///< mean, were everything visible
+  float mean = 0;           ///< mean over the receiver's real triangles: irradiance per unit radiosity
+  float spread = 0;         ///< largest deviation of a sample from what transfer and ambient say of it
+  float unoccluded = 0;     ///< mean, were everything visible
   uint32_t view = kNoView;  ///< LinkPool::views, for sources that are unevenly bright
-  uint8_t visibility = 0;  ///< share of sample rays that got through, of 255
-  uint8_t rays = 0;        ///< how many there were
+  uint8_t visibility = 0;   ///< share of sample rays that got through, of 255
+  uint8_t rays = 0;         ///< how many there were
   bool alive = true;
 };
 
-/// Measures a kept link's mean and visibility anew, with other points and rays, and `view` if given. A link is
-/// kept because its samples agree, and where little is seen through clutter they agree best when they miss it
-/// all: used as they are, they would lose light.
-/// Points are added until the standard error of the mean is below `tolerance`, to a limit.
+/// Measures a kept link's mean and visibility anew, with other points and rays, and `view` if given. A link
+/// is kept because its samples agree, and where little is seen through clutter they agree best when they miss
+/// it all: used as they are, they would lose light. Points are added until the standard error of the mean is
+/// below `tolerance`, to a limit.
 void measure_link(const ElementPool& pool, const Visibility& visibility, Link& link, float tolerance,
                   SourceView* view, RayCount& ray_count);
 

@@ -39,19 +39,28 @@ constexpr float kBuried = 0.02f;
 // Irradiance vectors by octant of the direction they come from; a column a colour channel.
 struct Octants {
   std::array<mat3, 8> sum{};
-  vec3 ambient{0};            // what falls on every normal alike
+  std::array<vec3, 8> shares{};  // the same for sources of radiosity one, lamps apart
+  vec3 ambient{0};               // what falls on every normal alike
+  float ambient_share = 0;
   float faced = 0, seen = 0;  // form factors, without and with occlusion
   uint32_t used = 0;
 
-  void add(const vec3& transfer, float even, const vec3& radiosity) {
-    ambient += even * radiosity;
+  void add(const Link& link, const vec3& radiosity, bool form_factor) {
+    const vec3& transfer = link.transfer;
+    ambient += link.ambient * radiosity;
     const uint32_t octant =
         (transfer.x < 0 ? 1u : 0u) | (transfer.y < 0 ? 2u : 0u) | (transfer.z < 0 ? 4u : 0u);
-    if ((used >> octant & 1) == 0) sum[octant] = mat3(0);
+    if ((used >> octant & 1) == 0) {
+      sum[octant] = mat3(0);
+      shares[octant] = vec3(0);
+    }
     used |= 1u << octant;
     sum[octant][0] += transfer * radiosity.x;
     sum[octant][1] += transfer * radiosity.y;
     sum[octant][2] += transfer * radiosity.z;
+    if (!form_factor) return;
+    shares[octant] += transfer;
+    ambient_share += link.ambient;
   }
 
   // Irradiance on a plane of unit normal `n`, each octant clipped by it; a shorter `n` stands for a bundle of
@@ -61,6 +70,14 @@ struct Octants {
     for (uint32_t o = 0; o < 8; ++o)
       if ((used >> o & 1) != 0) e += glm::max(n * sum[o], vec3(0));
     return e;
+  }
+
+  // How much of the hemisphere over `n` these links say that they fill.
+  float share_on(const vec3& n) const {
+    float share = ambient_share;
+    for (uint32_t o = 0; o < 8; ++o)
+      if ((used >> o & 1) != 0) share += std::max(0.0f, dot(n, shares[o]));
+    return share;
   }
 
   mat3 facing(const vec3& n) const {
@@ -79,11 +96,18 @@ struct Octants {
 struct Field {
   vec3 at_centre{0};
   mat3 gradient{0};
+  float share = 0;  // the same for sources of radiosity one, lamps apart
+  vec3 share_gradient{0};
 
-  Field moved(const vec3& by) const { return {at_centre + by * gradient, gradient}; }
-  void add(const Link& link, const vec3& b) {
+  Field moved(const vec3& by) const {
+    return {at_centre + by * gradient, gradient, share + dot(by, share_gradient), share_gradient};
+  }
+  void add(const Link& link, const vec3& b, bool form_factor) {
     at_centre += link.ambient * b;
     for (int c = 0; c < 3; ++c) gradient[c] += b[c] * link.transfer;
+    if (!form_factor) return;
+    share += link.ambient;
+    share_gradient += link.transfer;
   }
 };
 
@@ -100,6 +124,7 @@ struct Sweep {
     if (e.flat) return visit_flat(id, inherited, {});
     Octants octants = inherited;
     vec3 direct(0);
+    float direct_share = 0;
     for (const Link& link : links.into(id)) {
       if (is_form_factor(link)) {
         octants.faced += link.unoccluded;
@@ -107,10 +132,11 @@ struct Sweep {
       }
       if (link.mean <= 0) continue;
       const vec3 b = seen_radiosity(link, links.views(), old);
-      octants.add(link.transfer, link.ambient, b);
+      octants.add(link, b, is_form_factor(link));
       direct += link.mean * b;
+      if (is_form_factor(link)) direct_share += link.mean;
     }
-    if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct);
+    if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct, direct_share);
     float left = 0, right = 0;
     if (e.depth < 12) {
       tbb::parallel_invoke([&] { left = visit(e.first_child, octants); },
@@ -131,13 +157,14 @@ struct Sweep {
         faced += link.unoccluded;
         seen += link.mean;
       }
-      if (link.mean > 0) field.add(link, seen_radiosity(link, links.views(), old));
+      if (link.mean > 0) field.add(link, seen_radiosity(link, links.views(), old), is_form_factor(link));
     }
     if (e.first_child == kNoElement) {
       const vec3 n = e.summed_normal / std::max(e.area, 1e-30f);
       state.vector[id] = field.gradient;
       state.ambient[id] = vec3(0);
-      return settle(id, e, glm::max(above.on(n) + field.at_centre, vec3(0)), faced, seen);
+      return settle(id, e, glm::max(above.on(n) + field.at_centre, vec3(0)), above.share_on(n) + field.share,
+                    faced, seen);
     }
     Octants passed = above;
     passed.faced = faced;
@@ -149,19 +176,24 @@ struct Sweep {
     return change;
   }
 
-  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all,
-             const vec3& direct) const {
+  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct,
+             float direct_share) const {
     vec3 irradiance = direct;
+    float share = direct_share;
     if (e.cone_cosine < 0.95f) {
-      for (uint32_t i = 0; i < kStoredSamples; ++i)
-        irradiance +=
-            inherited.on(pool.stored_sample(id, i).normal) * (1.0f / static_cast<float>(kStoredSamples));
+      for (uint32_t i = 0; i < kStoredSamples; ++i) {
+        const vec3& n = pool.stored_sample(id, i).normal;
+        irradiance += inherited.on(n) * (1.0f / static_cast<float>(kStoredSamples));
+        share += inherited.share_on(n) * (1.0f / static_cast<float>(kStoredSamples));
+      }
     } else {
-      irradiance += inherited.on(e.summed_normal / std::max(e.area, 1e-30f));
+      const vec3 n = e.summed_normal / std::max(e.area, 1e-30f);
+      irradiance += inherited.on(n);
+      share += inherited.share_on(n);
     }
     state.vector[id] = all.facing(e.summed_normal);
     state.ambient[id] = all.ambient;
-    return settle(id, e, irradiance, all.faced, all.seen);
+    return settle(id, e, irradiance, share, all.faced, all.seen);
   }
 
   // A lamp's transfer is no share of a hemisphere.
@@ -170,10 +202,11 @@ struct Sweep {
     return kind != ElementKind::kPoint && kind != ElementKind::kSun;
   }
 
-  float settle(ElementId id, const Element& e, const vec3& gathered, float faced, float seen) const {
+  float settle(ElementId id, const Element& e, const vec3& gathered, float share, float faced,
+               float seen) const {
     // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let
     // light grow.
-    const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(seen, 1e-20f));
+    const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(share, 1e-20f));
     const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;

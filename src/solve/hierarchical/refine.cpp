@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "math/spherical_triangle.h"
+#include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
 namespace {
@@ -24,6 +25,10 @@ constexpr double kTurnError = 0.1;
 // Standard error of a link's power, in bounds of its error, that is good enough: errors of thousands of links
 // cancel.
 constexpr double kNoise = 0.5;
+
+// And of its irradiance, in the scene's mean: or small leaves that see a large wall in part would be
+// blotched.
+constexpr double kBlotch = 0.01;
 
 // How much of an element's area cancels in its summed normal: 0 for a plane, 1 for a closed object.
 double turned_share(const Element& e) {
@@ -123,8 +128,8 @@ float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const
   return dot(e.centre - at, n) + std::min(reach, e.radius);
 }
 
-// Whether all of `to` lies on or below all of the flat element `from`: nothing passes between them. `rounding`
-// metres above are as good as none.
+// Whether all of `to` lies on or below all of the flat element `from`: nothing passes between them.
+// `rounding` metres above are as good as none.
 bool faces_away(const ElementPool& pool, ElementId from, ElementId to, float rounding) {
   const Element& e = pool[from];
   if (!e.flat) return false;
@@ -291,6 +296,7 @@ void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool
   uint32_t views = 0;
   for (Link& link : all) link.view = is_uneven(pool, state, link) ? views++ : kNoView;
   links.views().resize(views);
+  const double mean = static_cast<double>(largest(landing_power(pool, state)) / pool[pool.root()].area);
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(
       all.size(),
@@ -301,8 +307,10 @@ void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool
         }
         RayCount cast;
         Link& link = all[i];
-        const double power = static_cast<double>(largest(state.shown[link.source]) * pool[link.receiver].area);
-        const auto tolerance = static_cast<float>(kNoise * power_error / std::max(power, 1e-300));
+        const auto b = static_cast<double>(largest(state.shown[link.source]));
+        const double area = static_cast<double>(pool[link.receiver].area);
+        const auto tolerance = static_cast<float>(
+            std::min(kNoise * power_error / std::max(area, 1e-300), kBlotch * mean) / std::max(b, 1e-300));
         measure_link(pool, visibility, link, tolerance,
                      link.view != kNoView ? &links.views()[link.view] : nullptr, cast);
         rays.fetch_add(cast.rays, std::memory_order_relaxed);

@@ -35,8 +35,8 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
                       const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
                       const std::function<void()>& between_waves);
 
-/// Measures all links anew, once no more will be refined, and looks at which places of uneven sources they see
-/// (measure_link). `power_error` as in RefineOptions. Rays are added to `rays`.
+/// Measures all links anew, once no more will be refined, and looks at which places of uneven sources they
+/// see (measure_link). `power_error` as in RefineOptions. Rays are added to `rays`.
 void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
                  const RadiosityState& state, double power_error, const CancelToken& cancel, RayCount& rays);
 

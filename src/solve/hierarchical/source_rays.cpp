@@ -74,14 +74,15 @@ struct SourceSampler {
       const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
       if (here <= 0 || there <= 0) return 0;
       // The disc of area pi r^2 bounds what a point of a volume cluster that happens to lie close may bring.
-      weight = here * there * e.area / (squared * (squared + (e.kind == ElementKind::kVolume ? e.area : 0.0f)));
+      weight =
+          here * there * e.area / (squared * (squared + (e.kind == ElementKind::kVolume ? e.area : 0.0f)));
     }
     if (weight > 0) ray = ray_between(x, n, y.position, y.normal, epsilon);
     return weight / kPi;
   }
 };
 
-constexpr uint32_t kPacket = 16;
+constexpr uint32_t kPacket = 16, kLooked = 8;
 
 }  // namespace
 
@@ -99,7 +100,7 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
     const uint32_t batch = std::min(kPacket, rays - first);
     // Of two or three drawn blindly often all would bring nothing: then more are looked at, and rays go to
     // them in proportion to what they would bring.
-    const uint32_t looked = hides ? kPacket : batch;
+    const uint32_t looked = hides ? std::max(batch, kLooked) : batch;
     uint32_t size = 0;
     float all = 0;
     for (uint32_t i = 0; i < looked; ++i) {
@@ -113,7 +114,8 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
     for (uint32_t k = 0, next = 0; k < cast; ++k) {
       if (hides) {
         share[k] = all / static_cast<float>(cast);
-        for (const float target = share[k] * (static_cast<float>(k) + start); up_to < target && next + 1 < size;)
+        for (const float target = share[k] * (static_cast<float>(k) + start);
+             up_to < target && next + 1 < size;)
           up_to += weight[++next];
         chosen[k] = next;
       } else {

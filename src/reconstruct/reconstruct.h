@@ -16,7 +16,7 @@ enum class Reconstruction {
 struct ReconstructOptions {
   Reconstruction method = Reconstruction::kGather;
   uint32_t light_rays =
-      32;  ///< kGather: shadow rays for a link that brings all of a vertex's light; less pro rata
+      128;  ///< kGather: shadow rays for a link that brings all of a vertex's light; less pro rata
   float ray_share =
       0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
 };

@@ -51,7 +51,7 @@ Effort effort_for(Quality quality) {
     case Quality::kDraft:
       effort.solve.last_error = 1e-4;
       effort.solve.least_area = 2e-4;
-      effort.reconstruct.light_rays = 16;
+      effort.reconstruct.light_rays = 32;
       effort.reconstruct.ray_share = 0.03f;
       break;
     case Quality::kMedium:
@@ -61,13 +61,13 @@ Effort effort_for(Quality quality) {
     case Quality::kHigh:
       effort.solve.last_error = 3e-6;
       effort.solve.least_area = 6e-6;
-      effort.reconstruct.light_rays = 64;
+      effort.reconstruct.light_rays = 256;
       effort.reconstruct.ray_share = 0.005f;
       break;
     case Quality::kFinal:
       effort.solve.last_error = 1e-6;
       effort.solve.least_area = 1.5e-6;
-      effort.reconstruct.light_rays = 128;
+      effort.reconstruct.light_rays = 512;
       effort.reconstruct.ray_share = 0.002f;
       break;
   }

@@ -66,8 +66,7 @@ TEST_P(SharedPower, IsKeptAtMedium) {
   if (!options) GTEST_SKIP() << "the shared scenes are not here";
   const BakeResult result = baked(*options);
   ASSERT_FALSE(result.json.empty());
-  // The aim is 1%, which most of these scenes keep; rooms full of thin parts are not there yet.
-  EXPECT_NEAR(lost_power(nlohmann::json::parse(result.json)), 0, 0.03);
+  EXPECT_NEAR(lost_power(nlohmann::json::parse(result.json)), 0, 0.01);
 }
 
 std::string test_name(const ::testing::TestParamInfo<SharedScene>& info) {
@@ -80,12 +79,15 @@ const SharedScene kQuick[] = {
     {"cornell-original", false}, {"cornell-sphere", false}, {"sponza", true}, {"conference-lit", false},
     {"small-house", false},      {"chess-room", false},     {"house", true},  {"jpm", true},
     {"as1-oc-214", true}};
-// These take half a minute each at medium, which is too long for a test.
+// At medium the bathroom gains 1.7%: its window frame is there twice, once in each of two materials, and both
+// copies take the light.
 const SharedScene kSlow[] = {{"bathroom", false}, {"sportscar-room", false}, {"engine-room", false}};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Shared, ::testing::ValuesIn(kQuick), test_name);
 INSTANTIATE_TEST_SUITE_P(SlowScenes, Shared, ::testing::ValuesIn(kSlow), test_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, SharedPower, ::testing::ValuesIn(kQuick), test_name);
+INSTANTIATE_TEST_SUITE_P(SlowScenes, SharedPower, ::testing::ValuesIn(std::span(kSlow).subspan(1)),
+                         test_name);
 
 }  // namespace
 }  // namespace goldthread

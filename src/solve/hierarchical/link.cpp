@@ -302,8 +302,11 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   const float likely = (link.visibility / 255.0f * link.rays + 0.5f) / (link.rays + 1.0f);
   const float deviation = link.unoccluded * std::sqrt(likely * (1 - likely));
   const float wanted = deviation * deviation / std::max(tolerance * tolerance, 1e-30f);
-  const auto points = static_cast<uint32_t>(
-      std::clamp(std::ceil(wanted), static_cast<float>(kFreshPoints), static_cast<float>(kMostPoints)));
+  // The exact transfer of a curved source costs hundreds of triangles a point.
+  const bool costly = likely > 0.5f && pool[there].kind == ElementKind::kCluster && !pool[there].flat;
+  const auto most = static_cast<float>(costly ? 2 * kFreshPoints : kMostPoints);
+  const auto points =
+      static_cast<uint32_t>(std::clamp(std::ceil(wanted), static_cast<float>(kFreshPoints), most));
   float received = 0, unoccluded = 0;
   uint32_t rays = 0;
   for (uint32_t i = 0; i < points; ++i) {

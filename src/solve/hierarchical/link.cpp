@@ -106,43 +106,75 @@ void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& l
   link.spread += 0.1f * (std::abs(g1) + std::abs(g2));
 }
 
-// Mean and plane fitted by least squares over samples that lie where the triangles do.
+// A plane through samples over a flat receiver, by least squares.
+class PlaneFit {
+ public:
+  explicit PlaneFit(const Element& receiver) : centre_(receiver.centre) {
+    const vec3 n = normalize_or(receiver.summed_normal, vec3(0, 1, 0));
+    u_ = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y));
+    v_ = cross(n, u_);
+  }
+
+  void add(const vec3& place, float value) {
+    const vec2 p(dot(place - centre_, u_), dot(place - centre_, v_));
+    count_ += 1;
+    place_ += p;
+    value_ += value;
+    squares_ += vec3(p.x * p.x, p.x * p.y, p.y * p.y);
+    products_ += p * value;
+  }
+
+  vec3 gradient() const {
+    if (count_ <= 0) return vec3(0);
+    const vec3 square =
+        squares_ - vec3(place_.x * place_.x, place_.x * place_.y, place_.y * place_.y) / count_;
+    const vec2 product = products_ - place_ * (value_ / count_);
+    const float xx = square.x, xy = square.y, yy = square.z;
+    const float determinant = xx * yy - xy * xy;
+    vec2 g(0);
+    if (determinant > 1e-4f * (xx + yy) * (xx + yy)) {
+      g = vec2(yy * product.x - xy * product.y, xx * product.y - xy * product.x) / determinant;
+    } else if (xx + yy > 0) {
+      // Samples along a line tell nothing across it.
+      const vec2 along = glm::normalize(xx >= yy ? vec2(xx, xy) : vec2(xy, yy));
+      g = along * (dot(along, product) / (xx + yy));
+    }
+    return g.x * u_ + g.y * v_;
+  }
+
+  vec3 middle() const {
+    const vec2 p = place_ / std::max(count_, 1.0f);
+    return p.x * u_ + p.y * v_;
+  }
+
+  // Standard deviation of the places along `direction`, times its length.
+  float reach(const vec3& direction) const {
+    const vec2 g(dot(direction, u_), dot(direction, v_)), m = place_ / std::max(count_, 1.0f);
+    const vec3 square = squares_ / std::max(count_, 1.0f) - vec3(m.x * m.x, m.x * m.y, m.y * m.y);
+    return std::sqrt(std::max(0.0f, square.x * g.x * g.x + 2 * square.y * g.x * g.y + square.z * g.y * g.y));
+  }
+
+ private:
+  vec3 centre_, u_, v_;
+  float count_ = 0, value_ = 0;
+  vec2 place_{0}, products_{0};
+  vec3 squares_{0};
+};
+
+// Mean and gradient from samples that lie where the triangles do.
 void fit_plane(Link& link, const Element& receiver, std::span<const SurfacePoint> at,
                std::span<const float> received) {
-  const auto count = static_cast<float>(at.size());
-  const vec3 n = normalize_or(receiver.summed_normal, vec3(0, 1, 0));
-  const vec3 u = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y)), v = cross(n, u);
-  vec2 middle(0);
-  for (const SurfacePoint& p : at)
-    middle += vec2(dot(p.position - receiver.centre, u), dot(p.position - receiver.centre, v)) / count;
-  float xx = 0, xy = 0, yy = 0, xf = 0, yf = 0;
-  for (size_t i = 0; i < at.size(); ++i) {
-    const vec2 p =
-        vec2(dot(at[i].position - receiver.centre, u), dot(at[i].position - receiver.centre, v)) - middle;
-    const float f = received[i] - link.mean;
-    xx += p.x * p.x;
-    xy += p.x * p.y;
-    yy += p.y * p.y;
-    xf += p.x * f;
-    yf += p.y * f;
-  }
-  const float determinant = xx * yy - xy * xy;
-  vec2 g(0);
-  if (determinant > 1e-4f * (xx + yy) * (xx + yy)) {
-    g = vec2(yy * xf - xy * yf, xx * yf - xy * xf) / determinant;
-  } else if (xx + yy > 0) {
-    // Samples along a line tell nothing across it.
-    const vec2 along = glm::normalize(xx >= yy ? vec2(xx, xy) : vec2(xy, yy));
-    g = along * ((along.x * xf + along.y * yf) / (xx + yy));
-  }
-  link.ambient = std::max(0.0f, link.mean - dot(g, middle));
-  link.transfer = g.x * u + g.y * v;
+  PlaneFit fit(receiver);
+  for (size_t i = 0; i < at.size(); ++i) fit.add(at[i].position, received[i]);
+  link.transfer = fit.gradient();
+  link.ambient = std::max(0.0f, link.mean - dot(link.transfer, fit.middle()));
+  const float linear = fit.reach(link.transfer);
   limit_gradient(link, receiver.radius);
   for (size_t i = 0; i < at.size(); ++i) {
     const float said = link.ambient + dot(at[i].position - receiver.centre, link.transfer);
     link.spread = std::max(link.spread, std::abs(received[i] - said));
   }
-  link.spread += 0.1f * std::sqrt((xx * g.x * g.x + 2 * xy * g.x * g.y + yy * g.y * g.y) / count);
+  link.spread += 0.1f * linear;
   link.mean = link.ambient;  // the centre is the centroid
 }
 
@@ -177,7 +209,7 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
 }
 
 // Of the last measurement of links.
-constexpr uint32_t kFreshPoints = 8, kMostPoints = 128, kFreshRays = 2;
+constexpr uint32_t kFreshPoints = 8, kMostPoints = 64, kFreshRays = 2;
 
 // Gives a link another mean, keeping the shape of its light over the receiver if there was any to speak of.
 void set_mean(Link& link, float mean) {
@@ -254,8 +286,8 @@ namespace {
 
 // Places of a source, and what each brings: more than a link can keep.
 struct SeenElements {
-  std::array<ElementId, kMostPoints * kFreshRays> elements;
-  std::array<float, kMostPoints * kFreshRays> weights;
+  std::array<ElementId, 2 * kMostPoints * kFreshRays> elements;
+  std::array<float, 2 * kMostPoints * kFreshRays> weights;
   uint32_t count = 0;
 
   void add(ElementId id, float weight) {
@@ -302,13 +334,17 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   const float likely = (link.visibility / 255.0f * link.rays + 0.5f) / (link.rays + 1.0f);
   const float deviation = link.unoccluded * std::sqrt(likely * (1 - likely));
   const float wanted = deviation * deviation / std::max(tolerance * tolerance, 1e-30f);
-  // The exact transfer of a curved source costs hundreds of triangles a point.
+  // Rays are cheaper than points, above all before curved sources, whose exact transfer takes hundreds of
+  // triangles.
+  const uint32_t per_point = wanted > kFreshPoints ? 2 * kFreshRays : kFreshRays;
   const bool costly = likely > 0.5f && pool[there].kind == ElementKind::kCluster && !pool[there].flat;
-  const auto most = static_cast<float>(costly ? 2 * kFreshPoints : kMostPoints);
+  const auto most = static_cast<float>(costly ? kFreshPoints : kMostPoints);
   const auto points =
-      static_cast<uint32_t>(std::clamp(std::ceil(wanted), static_cast<float>(kFreshPoints), most));
+      static_cast<uint32_t>(std::clamp(std::ceil(wanted * kFreshRays / static_cast<float>(per_point)),
+                                       static_cast<float>(kFreshPoints), most));
   float received = 0, unoccluded = 0;
   uint32_t rays = 0;
+  PlaneFit fit(r);
   for (uint32_t i = 0; i < points; ++i) {
     // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge.
     const UnitSquarePoint uv = r2_point(i, seed);
@@ -319,7 +355,7 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     // Either way of counting is right on the average; the one that is likely to be small has little to be
     // wrong about.
     if (form_factors && likely <= 0.5f) {
-      const SeenShare share = visibility.look(pool, there, x.position, x.normal, kFreshRays, seed + i,
+      const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
                                               ray_count, view != nullptr ? &seen : nullptr);
       arriving = share.seen;
       unoccluded += share.seen + share.hidden;
@@ -327,17 +363,21 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
       const vec3 m = point_transfer(pool, there, x.position, x.normal);
       const float factor = std::max(0.0f, dot(m, x.normal));
       unoccluded += factor;
-      if (factor <= 0) continue;
+      if (factor <= 0) {
+        fit.add(x.position, 0);
+        continue;
+      }
       if (form_factors) {
-        const SeenShare share = visibility.look(pool, there, x.position, x.normal, kFreshRays, seed + i,
+        const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
                                                 ray_count, view != nullptr ? &seen : nullptr);
         arriving = factor - share.hidden;
       } else {
         arriving =
-            factor * visibility.fraction(pool, there, x.position, x.normal, kFreshRays, seed + i, ray_count);
+            factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i, ray_count);
       }
     }
     received += arriving;
+    fit.add(x.position, arriving);
     rays += static_cast<uint32_t>(ray_count.rays - before);
     if (view == nullptr) continue;
     if (from_source) {
@@ -352,7 +392,16 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   received = std::max(0.0f, received);
   const auto n = static_cast<float>(points);
   link.unoccluded = turned * unoccluded / n;
-  set_mean(link, turned * received / n);
+  const float mean = turned * received / n;
+  if (r.flat && !from_source) {
+    // What the first samples say of the slope is as good as what these do, ray for ray.
+    const float first = static_cast<float>(link.rays) / static_cast<float>(std::max(1u, link.rays + rays));
+    link.transfer = first * link.transfer + (1 - first) * fit.gradient();
+    link.mean = link.ambient = mean;
+    limit_gradient(link, r.radius);
+  } else {
+    set_mean(link, mean);
+  }
   finish(link, received, unoccluded, rays);
   if (view != nullptr) places.choose(*view, link.source, unit_float(hash(seed, 99)));
 }

@@ -16,6 +16,14 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
   return static_cast<uint32_t>(std::clamp(std::ceil(wanted), mixed ? 2.0f : 1.0f, 64.0f));
 }
 
+// What a source could bring at most to a point, by its size and distance alone: a link may be weak on the
+// whole and yet all that a point next to the source gets.
+float most_at(const Element& source, const vec3& x) {
+  if (!is_surface(source.kind)) return 0;
+  const float apart = length(source.centre - x) - source.radius;
+  return apart > 0 ? std::min(1.0f, source.area / (kPi * apart * apart)) : 1.0f;
+}
+
 }  // namespace
 
 Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
@@ -32,7 +40,9 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       const vec3 b = seen_radiosity(link, solver.links().views(), state.shown);
       const float most = largest(b);
       if (most <= 0) continue;
-      if ((link.mean + link.spread) * most < 0.1f * options.ray_share * whole) {
+      const float little = 0.1f * options.ray_share * whole, weak = (link.mean + link.spread) * most;
+      // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
+      if (weak < little && (link.visibility == 0 || most_at(pool[link.source], x) * most < 10 * little)) {
         const Element& r = pool[id];
         const float modelled = r.flat ? link.ambient + dot(x - r.centre, link.transfer)
                                       : std::max(0.0f, dot(n, link.transfer)) + link.ambient;

@@ -144,8 +144,7 @@ TEST_P(SharedCase, MeansOfSurfaces) {
     area[e.part] += double(e.area);
   }
   const std::string name = GetParam();
-  const bool obstructed = name == "gi-p-black-lroom" || name == "gi-p-globillum-room" ||
-                          name == "gi-p-lroom-colour" || name == "gi-p-cornell-rgb";
+  const double of_mean = name == "gi-p-cornell-rgb" ? 0.045 : name == "gi-p-globillum-room" ? 0.008 : 0.002;
   double total = 0, landing = 0;
   size_t checked = 0;
   for (size_t i = 0; i < names.size(); ++i) {
@@ -163,10 +162,9 @@ TEST_P(SharedCase, MeansOfSurfaces) {
     for (int k = 0; k < 3; ++k) {
       const double truth = expect["value"][size_t(k)],
                    got = (uniform ? radiosity : irradiance)[i][k] / area[i];
-      // The open rooms are held to 1% of the value, and a fifth of that of the room's mean where hardly any
-      // light gets. Where things stand in the room the solver is not there yet: just behind them it errs by
-      // up to a tenth of the mean.
-      EXPECT_NEAR(got, truth, 0.01 * truth + (obstructed ? 0.1 : 0.002) * landing / total)
+      // Within 1% of the value, and a fifth of that of the room's mean where hardly any light gets. Not yet
+      // there: the sides of the Cornell box's short block, which floor elements half under it light.
+      EXPECT_NEAR(got, truth, 0.01 * truth + of_mean * landing / total)
           << GetParam() << " " << names[i] << " channel " << k;
     }
   }

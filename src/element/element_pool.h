@@ -45,7 +45,7 @@ struct Element {
   uint32_t samples = 0;                ///< first of kStoredSamples in the pool, for kVolume and kCluster
   vec3 centre{0};
   float radius = 0;
-  float thickness = 0;  ///< how far it reaches from the plane through its centre, on either side, metres
+  float thickness = 0;     ///< how far it reaches from the plane through its centre, on either side, metres
   vec3 summed_normal{0};   ///< S, m^2 (equation 4.9), on the side that this element is
   float area = 0;          ///< m^2
   float cone_cosine = -1;  ///< normals lie within acos(this) of S

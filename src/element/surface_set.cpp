@@ -307,8 +307,4 @@ Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 
                          set.tree(part).mesh.source_triangles[triangle], weights);
 }
 
-bool is_textured(const SurfaceSet& set, const Part& part) {
-  return varies(*set.scene, primitive_of(*set.scene, part));
-}
-
 }  // namespace goldthread

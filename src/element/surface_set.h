@@ -80,7 +80,4 @@ struct Paint {
 };
 Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 
-/// Whether a part's reflectance, emission or coverage varies over it (textures, vertex colours).
-bool is_textured(const SurfaceSet& set, const Part& part);
-
 }  // namespace goldthread

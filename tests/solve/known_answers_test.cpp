@@ -28,9 +28,9 @@ TEST_P(Enclosure, RadiosityIsThatOfTheClosedForm) {
   Solved solved(test::procedural(name, uint64_t(triangles)));
   solved.solve();
   EXPECT_TRUE(solved.solver->stats().converged);
-  // Single leaves, in a corner, are worse than what is gathered at vertices from them (1%, see
-  // bake_known_test).
-  expect_uniform(solved, 2, 0.06, 0.003);
+  // Single leaves at the edges of the fine cube are not there yet; what is gathered at its vertices is.
+  const bool fine_cube = std::string(name) == "furnace" && triangles == 20000;
+  expect_uniform(solved, 2, fine_cube ? 0.04 : 0.03, 0.003);
 }
 
 INSTANTIATE_TEST_SUITE_P(KnownAnswers, Enclosure,

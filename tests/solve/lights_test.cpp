@@ -175,7 +175,7 @@ TEST(Sky, AScreenTakesItsFormFactor) {
   const auto exact = [&](const vec3& p) {
     return 100 * double(kPi) * (1 - double(polygon_form_factor(p, {0, 0, 1}, seen).z));
   };
-  EXPECT_LT(relative_error(solved, exact, skip_none), 0.03);
+  EXPECT_LT(relative_error(solved, exact, skip_none), 0.02);
   double truth = 0;
   for (int i = 0; i < 200; ++i)
     for (int j = 0; j < 200; ++j)

@@ -332,6 +332,9 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   // How many points it takes is told by the first samples, never by these: to stop where they happen to agree
   // would lose light again.
   const float likely = (link.visibility / 255.0f * link.rays + 0.5f) / (link.rays + 1.0f);
+  // To count what is seen or what is hidden is right on the average either way; the one that is likely to be
+  // small has little to be wrong about.
+  const bool count_seen = form_factors && likely <= 0.5f;
   const float deviation = link.unoccluded * std::sqrt(likely * (1 - likely));
   const float wanted = deviation * deviation / std::max(tolerance * tolerance, 1e-30f);
   // Rays are cheaper than points, above all before curved sources, whose exact transfer takes hundreds of
@@ -352,29 +355,23 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     const uint64_t before = ray_count.rays;
     SeenPoints seen;
     float arriving = 0;
-    // Either way of counting is right on the average; the one that is likely to be small has little to be
-    // wrong about.
-    if (form_factors && likely <= 0.5f) {
-      const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
-                                              ray_count, view != nullptr ? &seen : nullptr);
-      arriving = share.seen;
-      unoccluded += share.seen + share.hidden;
-    } else {
-      const vec3 m = point_transfer(pool, there, x.position, x.normal);
-      const float factor = std::max(0.0f, dot(m, x.normal));
+    float factor = 0;
+    if (!count_seen) {
+      factor = std::max(0.0f, dot(point_transfer(pool, there, x.position, x.normal), x.normal));
       unoccluded += factor;
       if (factor <= 0) {
         fit.add(x.position, 0);
         continue;
       }
-      if (form_factors) {
-        const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
-                                                ray_count, view != nullptr ? &seen : nullptr);
-        arriving = factor - share.hidden;
-      } else {
-        arriving =
-            factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i, ray_count);
-      }
+    }
+    if (form_factors) {
+      const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
+                                              ray_count, view != nullptr ? &seen : nullptr);
+      arriving = count_seen ? share.seen : factor - share.hidden;
+      if (count_seen) unoccluded += share.seen + share.hidden;
+    } else {
+      arriving =
+          factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i, ray_count);
     }
     received += arriving;
     fit.add(x.position, arriving);

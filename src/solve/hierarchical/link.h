@@ -37,8 +37,8 @@ struct Link {
 
 /// Measures a kept link's mean and visibility anew, with other points and rays, and `view` if given. A link
 /// is kept because its samples agree, and where little is seen through clutter they agree best when they miss
-/// it all: used as they are, they would lose light. Points are added until the standard error of the mean is
-/// below `tolerance`, to a limit.
+/// it all: used as they are, they would lose light. So many points are taken, up to a limit, that by what the
+/// link knows so far the standard error of its mean should be `tolerance`.
 void measure_link(const ElementPool& pool, const Visibility& visibility, Link& link, float tolerance,
                   SourceView* view, RayCount& ray_count);
 
@@ -47,11 +47,10 @@ inline vec3 seen_radiosity(const Link& link, std::span<const SourceView> views, 
   if (link.view == kNoView) return shown[link.source];
   vec3 sum(0);
   for (const ElementId id : views[link.view].elements) sum += shown[id];
-  return sum * (1.0f / 8);
+  return sum / static_cast<float>(views[link.view].elements.size());
 }
 
-/// Samples the transfer with `points` (4 or 8) receiver points of
-/// `rays_per_point` rays each.
+/// Samples the transfer with `points` (4 or 8) receiver points of `rays_per_point` rays each.
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
                uint32_t points, uint32_t rays_per_point, RayCount& ray_count);
 

@@ -94,10 +94,9 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const bool r_box = r.kind == ElementKind::kVolume, s_box = s.kind == ElementKind::kVolume;
   if (r_box != s_box) return r_box ? Decision::kReceiver : Decision::kSource;
   if (r_box) return r.radius >= s.radius ? Decision::kReceiver : Decision::kSource;
-  const double from_source = error.source;
-  if (error.receiver >= from_source)
+  if (error.receiver >= error.source)
     return receiver ? Decision::kReceiver
-                    : (from_source > options.power_error ? Decision::kSource : Decision::kKeep);
+                    : (error.source > options.power_error ? Decision::kSource : Decision::kKeep);
   return source ? Decision::kSource
                 : (error.receiver > options.power_error ? Decision::kReceiver : Decision::kKeep);
 }
@@ -156,10 +155,10 @@ void list_children(const ElementPool& pool, const Link& link, Decision decision,
   }
 }
 
-// Opens every element that a decision needs opened. A decision whose element turns out indivisible becomes
-// kKeep: its link comes up again in the next wave with the other side.
+// Opens every element that a decision needs opened. One that turns out indivisible stays childless: its link
+// comes up again in the next wave with the other side.
 void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
-                   std::vector<Decision>& decisions, RadiosityState& state) {
+                   std::span<const Decision> decisions, RadiosityState& state) {
   std::vector<ElementId> wanted;
   for (size_t i = 0; i < active.size(); ++i) {
     const Link& link = links[active[i]];
@@ -220,7 +219,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
   const double missed = unoccluded * (0.5 / (link.rays + 2.0));
-  error.receiver += b * area * (1.0 * static_cast<double>(link.spread) + missed);
+  error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;
   if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)

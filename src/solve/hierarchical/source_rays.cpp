@@ -35,10 +35,6 @@ uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCou
   return blocked;
 }
 
-}  // namespace
-
-namespace {
-
 // Draws points of a source as one point sees them.
 struct SourceSampler {
   const ElementPool& pool;

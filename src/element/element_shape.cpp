@@ -3,6 +3,7 @@
 
 #include "base/rng.h"
 #include "element/element_pool.h"
+#include "element/paint.h"
 #include "math/spherical_triangle.h"
 
 namespace goldthread {

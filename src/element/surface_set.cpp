@@ -4,14 +4,10 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "base/rng.h"
+#include "element/paint.h"
 
 namespace goldthread {
 namespace {
-
-const Primitive& primitive_of(const Scene& scene, const Part& part) {
-  return scene.meshes[scene.instances[part.instance].mesh].primitives[part.primitive];
-}
 
 // Whether `m` keeps angles: its columns orthogonal and of one length.
 bool is_similarity(const mat3& m) {
@@ -71,140 +67,6 @@ std::vector<TreeJob> list_parts(const Scene& scene, SurfaceSet& set) {
     }
   }
   return jobs;
-}
-
-vec2 texcoord_at(const Primitive& primitive, const Texture& texture, uint32_t source, vec2 weights) {
-  const std::vector<vec2>& uv = primitive.texcoords[std::min<int>(texture.texcoord, 1)];
-  if (uv.empty()) return vec2(0);
-  const uint32_t* corner = &primitive.indices[3 * size_t{source}];
-  return (1 - weights.x - weights.y) * uv[corner[0]] + weights.x * uv[corner[1]] + weights.y * uv[corner[2]];
-}
-
-vec4 base_colour_at(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
-  const Material& material = scene.materials[primitive.material];
-  vec4 colour(material.base_colour, material.alpha);
-  if (material.base_colour_texture.present())
-    colour *= sample_texture(material.base_colour_texture, scene.images,
-                             texcoord_at(primitive, material.base_colour_texture, source, weights));
-  if (!primitive.colours.empty()) {
-    const uint32_t* corner = &primitive.indices[3 * size_t{source}];
-    colour *= (1 - weights.x - weights.y) * primitive.colours[corner[0]] +
-              weights.x * primitive.colours[corner[1]] + weights.y * primitive.colours[corner[2]];
-  }
-  return colour;
-}
-
-float coverage_of(const Material& material, float alpha) {
-  switch (material.alpha_mode) {
-    case AlphaMode::kOpaque:
-      return 1;
-    case AlphaMode::kMask:
-      return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
-    case AlphaMode::kBlend:
-      return std::clamp(alpha, 0.0f, 1.0f);
-  }
-  return 1;
-}
-
-Paint paint_of_source(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
-  const Material& material = scene.materials[primitive.material];
-  const vec4 colour = base_colour_at(scene, primitive, source, weights);
-  Paint paint;
-  paint.coverage = coverage_of(material, colour.w);
-  float metallic = material.metallic;
-  if (material.metallic_texture.present() && metallic > 0)
-    metallic *= sample_data_texture(material.metallic_texture, scene.images,
-                                    texcoord_at(primitive, material.metallic_texture, source, weights))
-                    .z;
-  const vec3 reflectance = glm::clamp(vec3(colour) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
-  paint.reflectance = paint.coverage * reflectance;
-  vec3 emission = material.emission;
-  if (material.emits() && material.emission_texture.present())
-    emission *= vec3(sample_texture(material.emission_texture, scene.images,
-                                    texcoord_at(primitive, material.emission_texture, source, weights)));
-  paint.exitance = paint.coverage * kPi * emission;
-  return paint;
-}
-
-bool varies(const Scene& scene, const Primitive& primitive) {
-  const Material& material = scene.materials[primitive.material];
-  return material.base_colour_texture.present() || !primitive.colours.empty() ||
-         (material.metallic > 0 && material.metallic_texture.present()) ||
-         (material.emits() && material.emission_texture.present());
-}
-
-// How many samples a triangle's average deserves: one for every few texels it covers, within reason.
-uint32_t paint_samples(const Scene& scene, const Primitive& primitive, uint32_t source) {
-  const Material& material = scene.materials[primitive.material];
-  float texels = 1;
-  for (const Texture* texture : {&material.base_colour_texture, &material.emission_texture}) {
-    if (!texture->present()) continue;
-    const Image& image = scene.images[static_cast<size_t>(texture->image)];
-    const vec2 a = texcoord_at(primitive, *texture, source, {0, 0});
-    const vec2 b = texcoord_at(primitive, *texture, source, {1, 0}) - a;
-    const vec2 c = texcoord_at(primitive, *texture, source, {0, 1}) - a;
-    const float area = 0.5f * std::abs(b.x * c.y - b.y * c.x) * std::abs(texture->scale.x * texture->scale.y);
-    texels = std::max(texels, area * static_cast<float>(image.width) * static_cast<float>(image.height));
-  }
-  return static_cast<uint32_t>(std::clamp(texels / 4, 3.0f, 256.0f));
-}
-
-vec2 to_triangle(UnitSquarePoint p) {
-  // The fold keeps the points' even spread.
-  if (p.u + p.v > 1) return {1 - p.u, 1 - p.v};
-  return {p.u, p.v};
-}
-
-Paint average_paint(const Scene& scene, const Primitive& primitive, uint32_t source) {
-  Paint sum{vec3(0), vec3(0), 0};
-  const uint32_t count = paint_samples(scene, primitive, source);
-  for (uint32_t i = 0; i < count; ++i) {
-    const Paint one = paint_of_source(scene, primitive, source, to_triangle(r2_point(i, source)));
-    sum.reflectance += one.reflectance;
-    sum.exitance += one.exitance;
-    sum.coverage += one.coverage;
-  }
-  const float share = 1.0f / static_cast<float>(count);
-  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share};
-}
-
-// Averages the paint of every triangle, and of the whole part by area.
-void paint_part(const SurfaceSet& set, Part& part) {
-  const Scene& scene = *set.scene;
-  const Primitive& primitive = primitive_of(scene, part);
-  const TriangleMesh& mesh = set.tree(part).mesh;
-  if (mesh.triangles.empty()) return;
-  if (!varies(scene, primitive)) {
-    const Paint paint = paint_of_source(scene, primitive, mesh.source_triangles[0], {1 / 3.0f, 1 / 3.0f});
-    part.reflectance = paint.reflectance;
-    part.exitance = paint.exitance;
-    part.coverage = paint.coverage;
-    return;
-  }
-  const size_t count = mesh.triangles.size();
-  std::vector<Paint> paints(count);
-  parallel_for(
-      count, [&](size_t t) { paints[t] = average_paint(scene, primitive, mesh.source_triangles[t]); }, 64);
-  part.triangle_reflectance.resize(count);
-  part.triangle_exitance.resize(count);
-  part.triangle_coverage.resize(count);
-  glm::dvec3 reflectance(0), exitance(0);
-  double coverage = 0, area = 0;
-  for (size_t t = 0; t < count; ++t) {
-    part.triangle_reflectance[t] = paints[t].reflectance;
-    part.triangle_exitance[t] = paints[t].exitance;
-    part.triangle_coverage[t] = paints[t].coverage;
-    const UVec3& c = mesh.triangles[t];
-    const double a = static_cast<double>(
-        length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z])));
-    area += a;
-    reflectance += a * dvec3(paints[t].reflectance);
-    exitance += a * dvec3(paints[t].exitance);
-    coverage += a * static_cast<double>(paints[t].coverage);
-  }
-  part.reflectance = vec3(reflectance / std::max(area, 1e-300));
-  part.exitance = vec3(exitance / std::max(area, 1e-300));
-  part.coverage = static_cast<float>(coverage / std::max(area, 1e-300));
 }
 
 uint32_t count_clamped(const Scene& scene) {
@@ -289,22 +151,10 @@ WorldTriangles world_triangles(const SurfaceSet& set) {
   return world;
 }
 
-float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
-  const Primitive& primitive = primitive_of(*set.scene, part);
-  const uint32_t source = set.tree(part).mesh.source_triangles[triangle];
-  return coverage_of(set.scene->materials[part.material],
-                     base_colour_at(*set.scene, primitive, source, weights).w);
-}
-
 const Part& part_of_triangle(const SurfaceSet& set, uint32_t triangle) {
   const auto after = std::upper_bound(set.parts.begin(), set.parts.end(), triangle,
                                       [](uint32_t t, const Part& part) { return t < part.first_triangle; });
   return *(after - 1);
-}
-
-Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
-  return paint_of_source(*set.scene, primitive_of(*set.scene, part),
-                         set.tree(part).mesh.source_triangles[triangle], weights);
 }
 
 }  // namespace goldthread

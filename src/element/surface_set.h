@@ -24,10 +24,13 @@ struct Part {
   uint32_t first_triangle = 0;             ///< the number of its triangle 0 among all of the world's
   vec3 reflectance{0};                     ///< times coverage, clamped below 1
   vec3 exitance{0};                        ///< lm/m^2, times coverage
-  float coverage = 1;                      ///< share of the area that is there (alpha)
+  float coverage = 1;                      ///< share of the area that is there (alpha, overlaps)
   std::vector<vec3> triangle_reflectance;  ///< area averages per tree triangle; empty when uniform
   std::vector<vec3> triangle_exitance;     ///< the same, empty when uniform
   std::vector<float> triangle_coverage;    ///< the same, empty when uniform
+  /// The world's triangles that own places of this part's (settle_overlaps); triangle t's are covering
+  /// [covering_first[t], covering_first[t + 1]). Both empty when there are none.
+  std::vector<uint32_t> covering_first, covering;
 };
 
 /// One side of a connected component of a part: the unit that sends and receives light. Two-sided materials
@@ -48,12 +51,11 @@ struct SurfaceSet {
   uint64_t face_clusters = 0;      ///< inner nodes of all trees
   SkippedTriangles skipped;        ///< over all instances
   uint32_t clamped_materials = 0;  ///< whose reflectance was cut to kMaxReflectance
+  float same_place = 0;            ///< metres within which triangles of one plane lie in one place
+  uint64_t overlapping = 0;        ///< pairs of triangles in one place, of which one owns it
 
   const FaceClusterTree& tree(const Part& part) const { return trees[part.tree]; }
 };
-
-/// Light that is reflected for ever converges too slowly to be told from light that grows.
-constexpr float kMaxReflectance = 0.95f;
 
 /// Welds, clusters and places every lit primitive of `scene`, which must outlive the result.
 SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel);
@@ -67,17 +69,7 @@ struct WorldTriangles {
 };
 WorldTriangles world_triangles(const SurfaceSet& set);
 
-/// Alpha of the part's material at a point of one of its tree's triangles, 0..1 (1 or 0 for a mask).
-float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
-
 /// The part that the world's triangle belongs to.
 const Part& part_of_triangle(const SurfaceSet& set, uint32_t triangle);
-
-/// Reflectance, exitance and coverage at a point, as the element averages are made of.
-struct Paint {
-  vec3 reflectance{0}, exitance{0};
-  float coverage = 1;
-};
-Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 
 }  // namespace goldthread

@@ -44,4 +44,15 @@ inline vec3 area_vector(const vec3& a, const vec3& b, const vec3& c) {
   return vec3(0.5 * cross(dvec3(b) - from, dvec3(c) - from));
 }
 
+/// Whether `p` lies on triangle a b c, to within `tolerance` of its plane. Points on its edges do.
+inline bool lies_on_triangle(const vec3& p, const vec3& a, const vec3& b, const vec3& c, float tolerance) {
+  const dvec3 u = dvec3(b) - dvec3(a), v = dvec3(c) - dvec3(a), w = dvec3(p) - dvec3(a);
+  const dvec3 n = cross(u, v);
+  const double squared = dot(n, n), height = dot(w, n);
+  const double reach = static_cast<double>(tolerance) * static_cast<double>(tolerance) * squared;
+  if (!(squared > 0) || !(height * height <= reach)) return false;
+  const double s = dot(cross(w, v), n), t = dot(cross(u, w), n), slack = 1e-6 * squared;
+  return s >= -slack && t >= -slack && s + t <= squared + slack;
+}
+
 }  // namespace goldthread

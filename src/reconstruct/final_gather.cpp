@@ -26,8 +26,9 @@ float most_at(const Element& source, const vec3& x) {
 
 }  // namespace
 
-Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
-                   const GatherOptions& options, uint32_t seed, RayCount& rays) {
+Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown, ElementId leaf,
+                   const vec3& x, const vec3& n, const GatherOptions& options, uint32_t seed,
+                   RayCount& rays) {
   const ElementPool& pool = solver.pool();
   const RadiosityState& state = solver.state();
   // What the leaf has in all, against which single links are weighed; its own value may be nought in a
@@ -37,7 +38,7 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
   float faced = 0, seen = 0;
   for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
     for (const Link& link : solver.links().into(id)) {
-      const vec3 b = seen_radiosity(link, solver.links().views(), state.shown);
+      const vec3 b = seen_radiosity(link, solver.links().views(), shown);
       const float most = largest(b);
       if (most <= 0) continue;
       const float little = 0.1f * options.ray_share * whole, weak = (link.mean + link.spread) * most;
@@ -57,7 +58,8 @@ Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3&
       const ElementKind kind = pool[link.source].kind;
       const uint32_t count = rays_for(factor * most / (whole + factor * most), link, kind, options);
       float visible = static_cast<float>(link.visibility) / 255.0f;
-      if (count > 0) visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays);
+      if (count > 0)
+        visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays, visible);
       if (is_surface(kind)) visible = std::min(visible, 1 / factor);
       sum += visible * factor * b;
       if (kind == ElementKind::kPoint || kind == ElementKind::kSun) continue;

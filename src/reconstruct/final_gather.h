@@ -19,7 +19,8 @@ struct Gathered {
 /// elements above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew), but
 /// for those that bring next to nothing, which serve as they are. Rays are cast for links that bring a share
 /// of the light worth them; for the rest the links' own sampled visibility serves.
-Gathered gather_at(const HierarchicalSolver& solver, ElementId leaf, const vec3& x, const vec3& n,
-                   const GatherOptions& options, uint32_t seed, RayCount& rays);
+/// `shown` is the elements' radiosity: RadiosityState::shown or a better one.
+Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown, ElementId leaf,
+                   const vec3& x, const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
 
 }  // namespace goldthread

@@ -8,6 +8,7 @@
 #include "reconstruct/final_gather.h"
 #include "reconstruct/interpolate.h"
 #include "reconstruct/light_points.h"
+#include "reconstruct/outliers.h"
 
 namespace goldthread {
 namespace {
@@ -86,8 +87,8 @@ void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vec
   }
 }
 
-std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints& points,
-                              const std::vector<ElementId>& leaves, bool back,
+std::vector<vec3> gather_side(const HierarchicalSolver& solver, std::span<const vec3> shown,
+                              const PartPoints& points, const std::vector<ElementId>& leaves, bool back,
                               const ReconstructOptions& options, const CancelToken& cancel,
                               ReconstructStats& stats) {
   std::vector<vec3> light = average_side(solver, points, leaves, back);
@@ -106,7 +107,7 @@ std::vector<vec3> gather_side(const HierarchicalSolver& solver, const PartPoints
         const vec3 n = back ? -point.normal : point.normal;
         RayCount count;
         const Gathered gathered =
-            gather_at(solver, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
+            gather_at(solver, shown, leaf, drawn_in(point, points, solver.visibility().epsilon), n, gather,
                       hash(i, 77), count);
         light[i] = gathered.irradiance *
                    horizon_gain(dot(point.normal, points.face_normals[point.face]), gathered.seen);
@@ -136,6 +137,9 @@ Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions&
   const ElementPool& pool = solver.pool();
   const SurfaceSet& set = pool.surfaces();
   Lighting lighting;
+  const std::vector<vec3> shown = options.method == Reconstruction::kGather
+                                      ? settle_outliers(solver, options, cancel, stats)
+                                      : std::vector<vec3>();
   for (uint32_t part = 0; part < set.parts.size(); ++part) {
     const Material& material = set.scene->materials[set.parts[part].material];
     if (material.unlit || set.tree(set.parts[part]).mesh.triangles.empty()) continue;
@@ -147,7 +151,7 @@ Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions&
       const std::vector<vec3> light =
           options.method == Reconstruction::kAverage
               ? average_side(solver, points, leaves, side == 1)
-              : gather_side(solver, points, leaves, side == 1, options, cancel, stats);
+              : gather_side(solver, shown, points, leaves, side == 1, options, cancel, stats);
       (side == 0 ? lit.irradiance : lit.irradiance_back) = to_vertices(light, point_of_vertex);
     }
     lighting.primitives.push_back(std::move(lit));

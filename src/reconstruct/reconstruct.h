@@ -24,6 +24,7 @@ struct ReconstructOptions {
 struct ReconstructStats {
   RayCount rays;
   uint64_t points = 0;
+  uint64_t outliers = 0;  ///< leaves whose own light was gathered first
 };
 
 /// Light on every primitive that receives it. When cancelled, what is not yet gathered is averaged.

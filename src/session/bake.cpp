@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/rng.h"
+#include "element/overlap.h"
 #include "files/atomic_file.h"
 #include "files/image_write.h"
 #include "files/scene_read.h"
@@ -20,6 +21,7 @@
 #include "session/report.h"
 #include "session/solve_session.h"
 #include "trace/preview.h"
+#include "visibility/coincident.h"
 
 namespace goldthread {
 namespace {
@@ -196,8 +198,12 @@ Status Bake::preprocess() {
       pass = [this](uint32_t t, vec2 w, const Ray& ray) { return passes(t, w, ray, surfaces_); };
     caster_ =
         std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(pass));
+    report_.seconds.ray_bvh = since(bvh);
+    settle_overlaps(surfaces_, find_coincident(world.positions, world.triangles, *caster_),
+                    caster_->epsilon());
+    report_.warnings.push_back(describe_overlaps(surfaces_));
+    std::erase(report_.warnings, std::string());
   }
-  report_.seconds.ray_bvh = since(bvh);
   const auto volumes = Clock::now();
   Effort effort = effort_for(options_.quality);
   solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
@@ -289,6 +295,8 @@ void Bake::finish_report() {
   report_.solver.epsilon = stats.epsilon;
   report_.solver.error_estimate = stats.error_estimate;
   report_.converged = stats.converged && !stats.limited;
+  const auto [least, most] = irradiance_range(lighting_);
+  report_.irradiance = {least, most};
   if (!cancelled_) report_.power = measure_power(*solver_, 400000, static_cast<uint32_t>(options_.seed));
 }
 

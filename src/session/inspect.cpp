@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "element/surface_set.h"
+#include "element/paint.h"
 #include "files/scene_read.h"
 #include "goldthread/bake.h"
 #include "math/colour.h"

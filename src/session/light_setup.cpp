@@ -4,8 +4,10 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/rng.h"
+#include "element/paint.h"
 #include "math/colour.h"
 
 namespace goldthread {
@@ -54,6 +56,12 @@ std::vector<std::string> describe_problems(const SurfaceSet& surfaces) {
   return lines;
 }
 
+std::string describe_overlaps(const SurfaceSet& surfaces) {
+  if (surfaces.overlapping == 0) return {};
+  return fmt::format("{} pairs of triangles overlap in one plane; each place is lit once",
+                     surfaces.overlapping);
+}
+
 bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces) {
   const Part& part = part_of_triangle(surfaces, triangle);
   const float alpha = alpha_at(surfaces, part, triangle - part.first_triangle, weights);
@@ -83,6 +91,17 @@ float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) 
   return count > 0 ? static_cast<float>(0.25 / std::exp(sum / count)) : 1.0f;
 }
 
+std::pair<double, double> irradiance_range(const Lighting& lighting) {
+  float least = std::numeric_limits<float>::infinity(), most = 0;
+  for (const LitPrimitive& lit : lighting.primitives)
+    for (const std::vector<vec3>* side : {&lit.irradiance, &lit.irradiance_back})
+      for (const vec3& e : *side) {
+        least = std::min(least, luminance(e));
+        most = std::max(most, luminance(e));
+      }
+  return {std::min(least, most), most};
+}
+
 uint64_t memory_bytes(const SurfaceSet& surfaces) {
   uint64_t bytes = 0;
   for (const FaceClusterTree& tree : surfaces.trees)
@@ -92,7 +111,8 @@ uint64_t memory_bytes(const SurfaceSet& surfaces) {
   for (const Part& part : surfaces.parts)
     bytes += sizeof(Part) + part.positions.capacity() * sizeof(vec3) +
              (part.triangle_reflectance.capacity() + part.triangle_exitance.capacity()) * sizeof(vec3) +
-             part.triangle_coverage.capacity() * sizeof(float);
+             part.triangle_coverage.capacity() * sizeof(float) +
+             (part.covering_first.capacity() + part.covering.capacity()) * sizeof(uint32_t);
   return bytes + surfaces.surfaces.capacity() * sizeof(Surface);
 }
 

@@ -1,6 +1,7 @@
 // The lights a user asks for, and what is worth warning about before any light is computed.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "element/surface_set.h"
@@ -23,6 +24,8 @@ std::string fix_scene_normals(Scene& scene);
 
 /// What was skipped or clamped, a line each.
 std::vector<std::string> describe_problems(const SurfaceSet& surfaces);
+/// The same about triangles in one place; empty when there are none.
+std::string describe_overlaps(const SurfaceSet& surfaces);
 
 /// Whether a ray goes through a triangle at a point: always where a mask has a hole, by chance where it is
 /// blended; the chance is a hash of the ray, so that it is the same every time.
@@ -31,6 +34,9 @@ bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& s
 /// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
 /// grey.
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);
+
+/// Least and greatest luminance of all vertices' irradiance, both sides, lx.
+std::pair<double, double> irradiance_range(const Lighting& lighting);
 
 /// Bytes of hierarchies and placed geometry.
 uint64_t memory_bytes(const SurfaceSet& surfaces);

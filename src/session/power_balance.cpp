@@ -59,70 +59,38 @@ vec3 cosine_direction(const vec3& n, float u, float v) {
          std::sqrt(std::max(0.0f, 1 - u)) * n;
 }
 
-// Triangles in whose plane, within their reach, others of the same part face the opposite way: plates without
-// thickness are modelled so, and a ray may meet either first.
-std::vector<uint8_t> find_backed(const SurfaceSet& set) {
-  struct Plane {
-    std::array<int32_t, 4> key;
-    bool turned = false;
-    Box box;
-    uint32_t triangle = 0;
-  };
-  std::vector<uint8_t> backed(set.triangles, 0);
-  for (const Part& part : set.parts) {
-    const TriangleMesh& mesh = set.tree(part).mesh;
-    Box bounds;
-    for (const vec3& p : part.positions)
-      if (is_finite(p)) bounds.add(p);
-    const float step = std::max(1e-5f * bounds.diagonal(), 1e-20f);
-    std::vector<Plane> planes(mesh.triangles.size());
-    for (uint32_t t = 0; t < planes.size(); ++t) {
-      Plane& plane = planes[t];
-      const UVec3& c = mesh.triangles[t];
-      const vec3 &p = part.positions[c.x], &q = part.positions[c.y], &r = part.positions[c.z];
-      vec3 n = normalize_or(area_vector(p, q, r), vec3(0, 1, 0));
-      plane.turned = n.x + 0.6f * n.y + 0.3f * n.z < 0;
-      if (plane.turned) n = -n;
-      plane.key = {static_cast<int32_t>(std::lround(n.x * 500)), static_cast<int32_t>(std::lround(n.y * 500)),
-                   static_cast<int32_t>(std::lround(n.z * 500)),
-                   static_cast<int32_t>(std::lround(dot(n, p - bounds.centre()) / (10 * step)))};
-      plane.triangle = part.first_triangle + t;
-      for (const vec3& corner : {p, q, r}) plane.box.add(corner);
-    }
-    std::sort(planes.begin(), planes.end(), [](const Plane& x, const Plane& y) {
-      return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
-    });
-    for (size_t i = 0, end = 0; i < planes.size(); i = end) {
-      Box straight, turned;
-      for (end = i; end < planes.size() && planes[end].key == planes[i].key; ++end)
-        (planes[end].turned ? turned : straight).add(planes[end].box);
-      if (straight.empty() || turned.empty()) continue;
-      for (size_t k = i; k < end; ++k) {
-        const Box &own = planes[k].box, &other = planes[k].turned ? straight : turned;
-        const bool apart = glm::any(glm::greaterThan(own.low, other.high + step)) ||
-                           glm::any(glm::greaterThan(other.low, own.high + step));
-        if (!apart) backed[planes[k].triangle] = 1;
-      }
-    }
-  }
-  return backed;
-}
-
 struct Counter {
   const HierarchicalSolver& solver;
   uint32_t rays, seed;
-  std::vector<uint8_t> backed;
 
   const ElementPool& pool() const { return solver.pool(); }
 
-  // Whether a hit triangle takes light on the side that the ray meets.
-  bool lands(const Hit& hit, const vec3& direction) const {
-    const SurfaceSet& set = pool().surfaces();
-    const Part& part = part_of_triangle(set, hit.triangle);
-    const Material& material = set.scene->materials[part.material];
-    if (material.unlit) return false;
-    return material.double_sided || backed[hit.triangle] != 0 ||
-           part.winding * dot(hit.normal, direction) < 0;
+  // Whether a triangle takes light on the side that a ray meets.
+  bool takes(uint32_t triangle, const vec3& normal, const vec3& direction) const {
+    const Part& part = part_of_triangle(pool().surfaces(), triangle);
+    const Material& material = pool().surfaces().scene->materials[part.material];
+    return !material.unlit && (material.double_sided || part.winding * dot(normal, direction) < 0);
+  }
+
+  // Whether light lands where a ray hits: on that triangle, or on one in the same place. Plates without
+  // thickness are modelled as two that face opposite ways, and a ray may meet either first.
+  bool lands(const Ray& ray, const Hit& hit) const {
+    if (takes(hit.triangle, hit.normal, ray.direction)) return true;
+    const Visibility& visibility = solver.visibility();
+    const vec3 p = ray.origin + hit.distance * ray.direction;
+    bool found = false;
+    // The hit itself is rounded, too.
+    const float tolerance = 2 * visibility.epsilon;
+    visibility.caster->near(p, tolerance, [&](uint32_t triangle) {
+      const SurfaceSet& set = pool().surfaces();
+      const Part& part = part_of_triangle(set, triangle);
+      const UVec3& c = set.tree(part).mesh.triangles[triangle - part.first_triangle];
+      const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
+      const vec3 normal = area_vector(a, b, d);
+      found |= std::abs(dot(normalize_or(normal, vec3(0)), normalize_or(hit.normal, vec3(0)))) > 0.999f &&
+               takes(triangle, normal, ray.direction) && lies_on_triangle(p, a, b, d, tolerance);
+    });
+    return found;
   }
 
   // Averages body(leaf, point, index) over points drawn by the leaves' weights.
@@ -154,7 +122,7 @@ struct Counter {
     ray.direction = cosine_direction(x.normal, uv.u, uv.v);
     ray.origin = x.position + solver.visibility().epsilon * x.normal;
     const Hit hit = solver.visibility().caster->closest(ray);
-    return hit.missed() ? 1 : lands(hit, ray.direction) ? 0 : 2;
+    return hit.missed() ? 1 : lands(ray, hit) ? 0 : 2;
   }
 
   // Flux that reaches surfaces straight from a sun, lm.
@@ -185,10 +153,11 @@ struct Counter {
       const double strength = static_cast<double>(light_distribution(open, d));
       if (strength <= 0) continue;
       sum += strength;
-      const Hit hit = solver.visibility().caster->closest({light.position, d});
+      const Ray ray{light.position, d};
+      const Hit hit = solver.visibility().caster->closest(ray);
       if (hit.missed()) continue;
       const double reach = static_cast<double>(light_range_factor(light, hit.distance));
-      (lands(hit, d) ? landed : backs) += strength * reach;
+      (lands(ray, hit) ? landed : backs) += strength * reach;
       sum -= strength * (1 - reach);  // glTF's range takes light away
     }
     const double scale = intensity * 4 * static_cast<double>(kPi) / count;
@@ -205,7 +174,7 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
   const ElementPool& pool = solver.pool();
   if (pool.root() == kNoElement) return balance;
   const RadiosityState& state = solver.state();
-  const Counter counter{solver, rays, seed, find_backed(pool.surfaces())};
+  const Counter counter{solver, rays, seed};
   const auto area = [](const Element& e) { return static_cast<double>(e.area); };
   double landing = 0, reflected = 0, own = 0;
   const Leaves by_power = collect(pool, [&](ElementId id, const Element& e) {

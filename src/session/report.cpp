@@ -46,6 +46,7 @@ std::string BakeReport::json() const {
                    {"absorbed", power.absorbed},
                    {"escaped", power.escaped},
                    {"residual", power.residual}};
+  j["irradiance_lx"] = {{"least", irradiance.least}, {"most", irradiance.most}};
   j["threads"] = threads;
   j["warnings"] = warnings;
   j["converged"] = converged;

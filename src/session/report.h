@@ -29,6 +29,9 @@ struct BakeReport {
     double epsilon = 0, error_estimate = 0;
   } solver;
   PowerBalance power;
+  struct {
+    double least = 0, most = 0;
+  } irradiance;  ///< luminance over all vertices that light was worked out for, lx
   int threads = 1;
   std::vector<std::string> warnings;
   bool converged = false;

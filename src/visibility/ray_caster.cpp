@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "math/box.h"
 
 namespace goldthread {
 namespace {
@@ -79,14 +80,31 @@ RTCRay to_embree(const Ray& ray) {
   return r;
 }
 
+float epsilon_for(std::span<const vec3> positions) {
+  Box box;
+  float magnitude = 0;
+  for (const vec3& p : positions) {
+    if (!is_finite(p)) continue;
+    box.add(p);
+    magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  return std::max(4e-6f * magnitude, 2e-6f * box.diagonal());
+}
+
 }  // namespace
 
 struct RayCaster::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::atomic<int64_t> bytes{0};
+  float epsilon = 0;
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;
+
+  uint32_t triangle_of(unsigned geometry, unsigned primitive) const {
+    const std::vector<uint32_t>& map = geometry == 1 ? see_through.triangles : opaque;
+    return map.empty() ? primitive : map[primitive];
+  }
 
   ~State() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -120,6 +138,7 @@ RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> tri
                      std::span<const uint8_t> see_through, PassThrough pass)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
+  s.epsilon = epsilon_for(positions);
   s.device = rtcNewDevice(nullptr);
   GOLDTHREAD_CHECK_EQ(s.device != nullptr, true);
   rtcSetDeviceMemoryMonitorFunction(
@@ -158,8 +177,7 @@ Hit RayCaster::closest(const Ray& ray) const {
   intersect1(state_->scene, &query);
   Hit hit;
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-  const std::vector<uint32_t>& map = query.hit.geomID == 1 ? state_->see_through.triangles : state_->opaque;
-  hit.triangle = map.empty() ? query.hit.primID : map[query.hit.primID];
+  hit.triangle = state_->triangle_of(query.hit.geomID, query.hit.primID);
   hit.distance = query.ray.tfar;
   hit.weights = {query.hit.u, query.hit.v};
   hit.normal = {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
@@ -198,6 +216,32 @@ uint32_t RayCaster::occluded_packet(std::span<const Ray> rays) const {
   for (size_t i = 0; i < rays.size(); ++i)
     if (packet.tfar[i] < 0) blocked |= 1u << i;
   return blocked;
+}
+
+void RayCaster::near(const vec3& point, float radius, const std::function<void(uint32_t)>& visit) const {
+  struct Visitor {
+    const State& state;
+    const std::function<void(uint32_t)>& visit;
+  } visitor{*state_, visit};
+  RTCPointQuery query{};
+  query.x = point.x;
+  query.y = point.y;
+  query.z = point.z;
+  query.radius = radius;
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(
+      state_->scene, &query, &context,
+      [](RTCPointQueryFunctionArguments* args) {
+        const auto* v = static_cast<const Visitor*>(args->userPtr);
+        v->visit(v->state.triangle_of(args->geomID, args->primID));
+        return false;  // the radius stays
+      },
+      &visitor);
+}
+
+float RayCaster::epsilon() const {
+  return state_->epsilon;
 }
 
 uint64_t RayCaster::memory_bytes() const {

@@ -49,6 +49,14 @@ class RayCaster {
   /// `occluded` for up to 16 rays at once, as a packet: bit i is set where ray i is blocked.
   uint32_t occluded_packet(std::span<const Ray> rays) const;
 
+  /// Calls `visit(triangle)` for every triangle that comes within `radius` of `point`, and for some others
+  /// that are not far, in no order.
+  void near(const vec3& point, float radius, const std::function<void(uint32_t triangle)>& visit) const;
+
+  /// Metres by which ray ends should leave their surfaces: far above the rounding of the triangles'
+  /// coordinates, far below anything visible. Surfaces closer than that lie in one place.
+  float epsilon() const;
+
   uint64_t memory_bytes() const;  ///< what Embree has allocated for this scene
 
  private:

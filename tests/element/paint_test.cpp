@@ -1,6 +1,7 @@
 // Reflectance, emission and coverage of elements, plain and textured.
 #include <gtest/gtest.h>
 
+#include "element/paint.h"
 #include "element/small_scenes.h"
 
 namespace goldthread {

@@ -34,7 +34,8 @@ void expect_all_keys(const nlohmann::json& report) {
        {"load", "preprocess", "face_clusters", "volume_clusters", "ray_bvh", "first_image", "solve",
         "reconstruct", "represent", "write", "total"}},
       {"solver", {"elements", "links", "rays", "ray_time_share", "iterations", "epsilon", "error_estimate"}},
-      {"power_lm", {"emitted", "absorbed", "escaped", "residual"}}};
+      {"power_lm", {"emitted", "absorbed", "escaped", "residual"}},
+      {"irradiance_lx", {"least", "most"}}};
   for (const auto& [section, keys] : sections) {
     ASSERT_TRUE(report.contains(section)) << section;
     for (const char* key : keys) EXPECT_TRUE(report[section].contains(key)) << section << "." << key;
@@ -103,8 +104,9 @@ TEST_P(KnownAnswer, IrradianceAtEveryWrittenVertex) {
 
 INSTANTIATE_TEST_SUITE_P(Medium, KnownAnswer,
                          ::testing::Values(std::pair("furnace", 12), std::pair("furnace", 1200),
-                                           std::pair("furnace", 50000), std::pair("sphere", 12),
-                                           std::pair("sphere", 1200), std::pair("sphere", 50000)),
+                                           std::pair("furnace", 50000), std::pair("furnace", 400000),
+                                           std::pair("sphere", 12), std::pair("sphere", 1200),
+                                           std::pair("sphere", 50000)),
                          [](const auto& info) {
                            return std::string(info.param.first) + std::to_string(info.param.second);
                          });

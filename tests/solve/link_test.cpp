@@ -203,6 +203,21 @@ TEST(Visibility, TwoRaysAreRightOnTheAverage) {
   EXPECT_NEAR(seen / double(all), 0.5, 0.03);
 }
 
+TEST(Visibility, ASourceThatNoRayTellsOfIsAsTheCallerSays) {
+  // Amid the source, in its own plane.
+  Scene scene;
+  test::add(scene, test::parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 4),
+            test::add(scene, test::diffuse(0.5f)));
+  test::Solved solved(std::move(scene));
+  const ElementId floor = surface_of_part(solved.pool(), 0);
+  for (const float unknown : {0.0f, 0.25f, 1.0f}) {
+    RayCount rays;
+    EXPECT_EQ(solved.solver->visibility().fraction(solved.pool(), floor, vec3(0.1f, 0.2f, 0), {0, 0, 1}, 8, 3,
+                                                   rays, unknown),
+              unknown);
+  }
+}
+
 TEST(Link, ItsViewHoldsOnlyWhatIsSeen) {
   // As above; the solution has cut the panel.
   Scene scene;

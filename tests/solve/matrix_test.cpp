@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "element/paint.h"
 #include "solve/solved_scene.h"
 
 namespace goldthread {

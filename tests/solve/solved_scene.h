@@ -4,9 +4,11 @@
 #include <utility>
 #include <vector>
 
+#include "element/overlap.h"
 #include "element/small_scenes.h"
 #include "scene/procedural.h"
 #include "solve/hierarchical/solver.h"
+#include "visibility/coincident.h"
 
 namespace goldthread::test {
 
@@ -25,6 +27,7 @@ struct Solved {
                                          [surfaces = set.get(), passes](uint32_t t, vec2 w, const Ray& ray) {
                                            return passes(t, w, ray, *surfaces);
                                          });
+    settle_overlaps(*set, find_coincident(world.positions, world.triangles, *caster), caster->epsilon());
     solver = std::make_unique<HierarchicalSolver>(*set, *caster, options);
   }
   explicit Solved(Scene s, const SolveOptions& options = {})

@@ -349,8 +349,10 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   uint32_t rays = 0;
   PlaneFit fit(r);
   for (uint32_t i = 0; i < points; ++i) {
-    // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge.
-    const UnitSquarePoint uv = r2_point(i, seed);
+    // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge. But
+    // the same for all that an element is linked to: where the one fills more of the view the others fill
+    // less, and the errors of their sum cancel.
+    const UnitSquarePoint uv = r2_point(i, hash(here, 0));
     const SurfacePoint x = pool.sample_at(here, uv.u, uv.v);
     const uint64_t before = ray_count.rays;
     SeenPoints seen;
@@ -389,8 +391,11 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   received = std::max(0.0f, received);
   const auto n = static_cast<float>(points);
   link.unoccluded = turned * unoccluded / n;
-  const float mean = turned * received / n;
+  float mean = turned * received / n;
   if (r.flat && !from_source) {
+    // The slope by the first samples, which knows nothing of these, tells what their mean owes to where they
+    // happen to lie.
+    mean = std::max(0.0f, mean - dot(link.transfer, fit.middle()));
     // What the first samples say of the slope is as good as what these do, ray for ray.
     const float first = static_cast<float>(link.rays) / static_cast<float>(std::max(1u, link.rays + rays));
     link.transfer = first * link.transfer + (1 - first) * fit.gradient();

@@ -10,16 +10,7 @@ HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCast
                                        const SolveOptions& options)
     : options_(options), pool_(surfaces), bound_(options.first_error) {
   visibility_.caster = &caster;
-  Box box;
-  float magnitude = 0;
-  for (const Part& part : surfaces.parts)
-    for (const vec3& p : part.positions) {
-      if (!is_finite(p)) continue;
-      box.add(p);
-      magnitude = std::max(magnitude, largest(glm::abs(p)));
-    }
-  // Far above the rounding of coordinates, far below anything visible.
-  visibility_.epsilon = std::max(4e-6f * magnitude, 2e-6f * box.diagonal());
+  visibility_.epsilon = caster.epsilon();
   state_.grow_to(pool_);
   make_first_links();
 }

@@ -133,7 +133,7 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
 }
 
 float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
-                           uint32_t rays, uint32_t seed, RayCount& count) const {
+                           uint32_t rays, uint32_t seed, RayCount& count, float unknown) const {
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
@@ -150,7 +150,7 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   if (e.kind == ElementKind::kSky) return 0;
   const vec3 to_centre = e.centre - origin;
   const float distance = length(to_centre);
-  if (distance <= 1.01f * e.radius) return 0;
+  if (distance <= 1.01f * e.radius) return unknown;
   Ray ray{origin, to_centre};
   ray.far = 1 - 1.01f * e.radius / distance;
   return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;

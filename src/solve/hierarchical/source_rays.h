@@ -44,9 +44,10 @@ struct Visibility {
                  uint32_t seed, RayCount& count, SeenPoints* places = nullptr) const;
 
   /// Share of `source` seen from `x`, 0..1. A ratio of two sums over few rays: less noisy than `look`, and a
-  /// little biased.
+  /// little biased. `unknown` is the answer where the rays can tell nothing: `x` lies amid the source, and no
+  /// place that was drawn faces it.
   float fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                 uint32_t seed, RayCount& count) const;
+                 uint32_t seed, RayCount& count, float unknown = 0) const;
 };
 
 }  // namespace goldthread

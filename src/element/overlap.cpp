@@ -1,0 +1,83 @@
+#include "element/overlap.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "element/paint.h"
+
+namespace goldthread {
+namespace {
+
+struct PlacedTriangle {
+  const Part& part;
+  uint32_t triangle;  // of the part's tree
+
+  const vec3& corner(const SurfaceSet& set, int k) const {
+    return part.positions[set.tree(part).mesh.triangles[triangle][k]];
+  }
+  vec3 area(const SurfaceSet& set) const {
+    return part.winding * area_vector(corner(set, 0), corner(set, 1), corner(set, 2));
+  }
+};
+
+PlacedTriangle placed(const SurfaceSet& set, uint32_t world_triangle) {
+  const Part& part = part_of_triangle(set, world_triangle);
+  return {part, world_triangle - part.first_triangle};
+}
+
+// Whether the first of two triangles takes the place of the second.
+bool owns(const SurfaceSet& set, uint32_t owner, uint32_t other) {
+  const PlacedTriangle a = placed(set, owner), b = placed(set, other);
+  const Material &first = set.scene->materials[a.part.material],
+                 &second = set.scene->materials[b.part.material];
+  if (first.unlit || second.unlit || first.alpha_mode != AlphaMode::kOpaque ||
+      second.alpha_mode != AlphaMode::kOpaque)
+    return false;
+  if (first.emits() != second.emits()) {
+    if (!first.emits()) return false;
+    // One side cannot take the place of two.
+    return first.double_sided || (!second.double_sided && dot(a.area(set), b.area(set)) > 0);
+  }
+  if (first.double_sided != second.double_sided) return first.double_sided;
+  return owner < other && (first.double_sided || dot(a.area(set), b.area(set)) > 0);
+}
+
+}  // namespace
+
+void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> pairs, float tolerance) {
+  std::vector<std::pair<uint32_t, uint32_t>> covered;  // world triangles: which, by which
+  for (const auto& [a, b] : pairs) {
+    if (owns(set, a, b)) covered.emplace_back(b, a);
+    if (owns(set, b, a)) covered.emplace_back(a, b);
+  }
+  std::sort(covered.begin(), covered.end());
+  set.same_place = tolerance;
+  std::vector<uint32_t> parts;
+  for (size_t i = 0; i < covered.size();) {
+    const auto number = static_cast<uint32_t>(&part_of_triangle(set, covered[i].first) - set.parts.data());
+    Part& part = set.parts[number];
+    const auto count = static_cast<uint32_t>(set.tree(part).mesh.triangles.size());
+    part.covering_first.assign(count + 1, 0);
+    part.covering.clear();
+    for (uint32_t t = 0; t < count; ++t) {
+      for (; i < covered.size() && covered[i].first == part.first_triangle + t; ++i)
+        part.covering.push_back(covered[i].second);
+      part.covering_first[t + 1] = static_cast<uint32_t>(part.covering.size());
+    }
+    parts.push_back(number);
+  }
+  parallel_for(parts.size(), [&](size_t i) { paint_part(set, set.parts[parts[i]]); });
+  set.overlapping = covered.size();
+}
+
+bool is_covered(const SurfaceSet& set, const Part& part, uint32_t triangle, const vec3& p) {
+  if (part.covering.empty()) return false;
+  for (uint32_t i = part.covering_first[triangle]; i < part.covering_first[triangle + 1]; ++i) {
+    const PlacedTriangle owner = placed(set, part.covering[i]);
+    if (lies_on_triangle(p, owner.corner(set, 0), owner.corner(set, 1), owner.corner(set, 2), set.same_place))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace goldthread

@@ -96,12 +96,10 @@ class MaterialReader {
 
   void read_emission(const aiMaterial& source, Material& material) {
     aiColor3D colour;
-    aiVector3D legacy;
-    if (source.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
-      material.emission = to_vec3(colour);
-    else if (source.Get("$raw.Emissive", 0, 0, legacy) ==
-             aiReturn_SUCCESS)  // FBX of before 2009, and assimp's
-      material.emission = vec3(legacy.x, legacy.y, legacy.z);
+    if (source.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS) material.emission = to_vec3(colour);
+    aiColor3D legacy;  // of FBX before 2009, beside the later name's default; assimp still writes it
+    if (!material.emits() && source.Get("$raw.Emissive", 0, 0, legacy) == aiReturn_SUCCESS)
+      material.emission = to_vec3(legacy);
     float factor = 1;
     if (source.Get(AI_MATKEY_EMISSIVE_INTENSITY, factor) == aiReturn_SUCCESS) material.emission *= factor;
     material.emission = glm::max(material.emission, vec3(0));

@@ -131,6 +131,16 @@ TEST(MeshReadFbx, AnEmissionTextureShinesWithoutAColour) {
   EXPECT_THAT(scene->warnings, Contains(HasSubstr("paint")));
 }
 
+TEST(MeshReadFbx, EmissionUnderItsOldName) {
+  TempFolder folder;
+  Fbx fbx;
+  fbx.material_properties =
+      colour("EmissiveColor", 0) + "\t\t\tP: \"Emissive\", \"Vector3D\", \"Vector\", \"\",50,40,25\n";
+  const Result<Scene> scene = read_scene(folder.write("old.fbx", fbx.text()));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(scene->materials.at(0).emission, vec3(50, 40, 25));
+}
+
 TEST(MeshReadFbx, RepeatsOfATexture) {
   TempFolder folder;
   folder.write("green.png", green_png());

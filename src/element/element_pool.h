@@ -106,7 +106,7 @@ class ElementPool {
                               float& weight) const;
   /// The deepest element below `id` that holds a point of it; a volume cluster is not searched.
   ElementId deepest(ElementId id, const SurfacePoint& point) const;
-  /// A direction within a sky element.
+  /// The direction within a sky element that belongs to (u, v), spread evenly over its solid angle.
   vec3 sky_direction(ElementId id, float u, float v) const;
 
   /// Corners of a triangle or patch.

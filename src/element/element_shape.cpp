@@ -491,6 +491,8 @@ void ElementPool::expand_sky(ElementId id) {
 
 vec3 ElementPool::sky_direction(ElementId id, float u, float v) const {
   const std::array<vec3, 3>& c = sky_[elements_[id].shape];
+  if (solid_angle(c[0], c[1], c[2]) >= kSmallSolidAngle)
+    return sample_spherical_triangle(c[0], c[1], c[2], u, v);
   const float s = std::sqrt(u);
   return normalize((1 - s) * c[0] + s * ((1 - v) * c[1] + v * c[2]));
 }

@@ -1,4 +1,5 @@
 // Attributes of refined meshes. See refine_elements in gltf_elements.h.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -31,6 +32,18 @@ Elements take_nearest(const Elements& source, std::span<const uint32_t> indices,
                 size);
   }
   return result;
+}
+
+/// Between the corners' values, whatever the weights round to: white must not be whiter than white.
+float blend(const Elements& source, const OriginCorners& corners, uint32_t component) {
+  float sum = 0, least = INFINITY, most = -INFINITY;
+  for (size_t k = 0; k < 3; ++k) {
+    const float value = source.value(corners.vertex[k], component);
+    sum += corners.weight[k] * value;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return std::min(std::max(sum, least), most);
 }
 
 void make_unit(float* v, const Elements& source, const OriginCorners& corners) {
@@ -71,7 +84,7 @@ Elements refine_elements(const Elements& source, std::string_view name, bool del
         out[c] = source.value(corners.vertex[corners.largest], c);
         continue;
       }
-      for (size_t k = 0; k < 3; ++k) out[c] += corners.weight[k] * source.value(corners.vertex[k], c);
+      out[c] = blend(source, corners, c);
     }
     if (!corners.exact && rule != Rule::kBlend) make_unit(out, source, corners);
     if (rule == Rule::kTangent) out[3] = source.value(corners.vertex[corners.largest], 3) < 0 ? -1.0f : 1.0f;

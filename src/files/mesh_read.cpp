@@ -1,8 +1,5 @@
 #include "files/mesh_read.h"
 
-#include <assimp/config.h>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -11,9 +8,12 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "files/gltf_read_container.h"
-#include "files/image_decode.h"
+#include "files/mesh_import.h"
+#include "files/mesh_read_materials.h"
+#include "math/colour.h"
 
 namespace goldthread {
 namespace {
@@ -30,25 +30,42 @@ mat4 to_mat4(const aiMatrix4x4& m) {
   return mat4(m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4);
 }
 
-/// FBX files name their axes, which assimp leaves to its caller: a turn that brings their up axis to Y.
+/// FBX files name their axes, which assimp leaves to its caller: the map that brings right, up and front to
+/// X, Y and Z.
 mat4 axis_correction(const aiScene& source) {
-  int32_t up = 1, sign = 1;
-  if (!source.mMetaData || !source.mMetaData->Get("UpAxis", up)) return mat4(1);
-  source.mMetaData->Get("UpAxisSign", sign);
-  if (up == 2 && sign > 0) return mat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
-  return mat4(1);
+  if (!source.mMetaData) return mat4(1);
+  int32_t axes[3] = {0, 1, 2}, signs[3] = {1, 1, 1};
+  constexpr const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
+  for (int row = 0; row < 3; ++row) {
+    source.mMetaData->Get(kNames[row], axes[row]);
+    source.mMetaData->Get(fmt::format("{}Sign", kNames[row]), signs[row]);
+  }
+  mat4 map(0);
+  map[3][3] = 1;
+  for (int row = 0; row < 3; ++row) {
+    if (axes[row] < 0 || axes[row] > 2) return mat4(1);
+    map[axes[row]][row] = signs[row] < 0 ? -1.0f : 1.0f;
+  }
+  return glm::determinant(mat3(map)) != 0 ? map : mat4(1);
+}
+
+/// Objects that the author has hidden in the program that wrote the FBX.
+bool is_hidden(const aiNode& node) {
+  bool shown = true;
+  return node.mMetaData && node.mMetaData->Get("Show", shown) && !shown;
 }
 
 class MeshFileReader {
  public:
-  MeshFileReader(const aiScene& source, const std::string& file) : source_(source), file_(file) {}
+  MeshFileReader(const aiScene& source, const std::string& file)
+      : source_(source), file_(file), format_(mesh_format(file)) {}
 
   Result<Scene> read() {
     scene_.file = file_;
-    for (unsigned i = 0; i < source_.mNumMaterials; ++i) read_material(*source_.mMaterials[i]);
-    if (scene_.materials.empty()) scene_.materials.emplace_back().metallic = 0;
+    read_mesh_materials(source_, format_, scene_);
     for (unsigned i = 0; i < source_.mNumMeshes; ++i)
       if (Status status = read_mesh(*source_.mMeshes[i], i); !status) return status.error();
+    paint_default_materials(source_, format_, scene_);
     if (source_.mRootNode) read_nodes();
     for (unsigned i = 0; i < source_.mNumLights; ++i) read_light(*source_.mLights[i]);
     if (!scene_.lights.empty())
@@ -59,85 +76,7 @@ class MeshFileReader {
   }
 
  private:
-  void read_material(const aiMaterial& source) {
-    Material material;
-    aiString name;
-    if (source.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = name.C_Str();
-    material.metallic = 0;
-    material.base_colour = vec3(0.8f);
-    aiColor3D colour;
-    if (source.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
-      material.base_colour = glm::clamp(to_vec3(colour), 0.0f, 1.0f);
-    if (source.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
-      material.emission = glm::max(to_vec3(colour), vec3(0));
-    float opacity = 1;
-    if (source.Get(AI_MATKEY_OPACITY, opacity) == aiReturn_SUCCESS && opacity < 1 && opacity >= 0) {
-      material.alpha = opacity;
-      material.alpha_mode = AlphaMode::kBlend;
-    }
-    int two_sided = 0;
-    if (source.Get(AI_MATKEY_TWOSIDED, two_sided) == aiReturn_SUCCESS) material.double_sided = two_sided != 0;
-    material.base_colour_texture = read_texture(source, aiTextureType_DIFFUSE);
-    if (material.emits()) material.emission_texture = read_texture(source, aiTextureType_EMISSIVE);
-    scene_.materials.push_back(std::move(material));
-  }
-
-  static Wrap wrap_mode(aiTextureMapMode mode) {
-    if (mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal) return Wrap::kClamp;
-    return mode == aiTextureMapMode_Mirror ? Wrap::kMirror : Wrap::kRepeat;
-  }
-
-  Texture read_texture(const aiMaterial& material, aiTextureType type) {
-    Texture texture;
-    aiString path;
-    unsigned channel = 0;
-    aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-    if (material.GetTexture(type, 0, &path, nullptr, &channel, nullptr, nullptr, modes) != aiReturn_SUCCESS ||
-        channel > 1)
-      return texture;
-    texture.image = read_image(path.C_Str());
-    texture.texcoord = uint8_t(channel);
-    texture.wrap_u = wrap_mode(modes[0]);
-    texture.wrap_v = wrap_mode(modes[1]);
-    return texture;
-  }
-
-  /// A picture of the file itself or beside it; -1 and a warning where it cannot be had. Each is decoded
-  /// once.
-  int32_t read_image(const std::string& path) {
-    const auto [known, is_new] = images_.try_emplace(path, -1);
-    if (!is_new) return known->second;
-    Result<Image> image = embedded_image(path);
-    if (!image) {
-      scene_.warnings.push_back(
-          fmt::format("texture \"{}\": {}; materials keep their plain colour", path, image.error().message));
-      return -1;
-    }
-    image->name = path;
-    scene_.images.push_back(*std::move(image));
-    return known->second = int32_t(scene_.images.size()) - 1;
-  }
-
-  Result<Image> embedded_image(const std::string& path) const {
-    const aiTexture* inside = source_.GetEmbeddedTexture(path.c_str());
-    if (!inside) {
-      const Result<Bytes> bytes = fetch_uri(path, file_);
-      return bytes ? decode_image(*bytes) : Result<Image>(bytes.error());
-    }
-    if (inside->mHeight == 0)  // encoded: mWidth counts bytes
-      return decode_image({reinterpret_cast<const uint8_t*>(inside->pcData), inside->mWidth});
-    Image image;
-    image.width = inside->mWidth;
-    image.height = inside->mHeight;
-    image.rgba.reserve(size_t(image.width) * image.height * 4);
-    for (size_t i = 0; i < size_t(image.width) * image.height; ++i) {
-      const aiTexel& t = inside->pcData[i];
-      image.rgba.insert(image.rgba.end(), {t.r, t.g, t.b, t.a});
-    }
-    return image;
-  }
-
-  /// V runs upwards in these formats and downwards in ours.
+  /// V runs upwards in these formats and downwards in ours. Their vertex colours are as a screen shows them.
   Status read_mesh(const aiMesh& source, unsigned index) {
     Mesh mesh;
     mesh.name = source.mName.C_Str();
@@ -156,20 +95,13 @@ class MeshFileReader {
                                                 1 - source.mTextureCoords[set][v].y);
       if (source.HasVertexColors(0)) {
         const aiColor4D& c = source.mColors[0][v];
-        primitive.colours.emplace_back(c.r, c.g, c.b, c.a);
+        primitive.colours.emplace_back(srgb_to_linear(c.r), srgb_to_linear(c.g), srgb_to_linear(c.b), c.a);
       }
     }
     for (unsigned f = 0; f < source.mNumFaces; ++f) {
       const aiFace& face = source.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
-      for (unsigned corner = 0; corner < 3; ++corner) {
-        if (face.mIndices[corner] >= source.mNumVertices)
-          return bad_input(
-              file_, place,
-              fmt::format("face {} names vertex {} of {}", f, face.mIndices[corner], source.mNumVertices),
-              "export the file again");
-        primitive.indices.push_back(face.mIndices[corner]);
-      }
+      for (unsigned corner = 0; corner < 3; ++corner) primitive.indices.push_back(face.mIndices[corner]);
     }
     if (!primitive.indices.empty()) mesh.primitives.push_back(std::move(primitive));
     scene_.meshes.push_back(std::move(mesh));
@@ -189,7 +121,9 @@ class MeshFileReader {
       const aiNode& node = *visit.node;
       const mat4 world = visit.parent * to_mat4(node.mTransformation);
       placed_.try_emplace(node.mName.C_Str(), world);
-      for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const bool hidden = node.mNumMeshes > 0 && is_hidden(node);
+      hidden_ += hidden ? 1 : 0;
+      for (unsigned i = 0; i < node.mNumMeshes && !hidden; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) continue;
         Instance instance;
         instance.mesh = node.mMeshes[i];
@@ -200,11 +134,34 @@ class MeshFileReader {
       }
       for (unsigned i = node.mNumChildren; i > 0; --i) stack.push_back({node.mChildren[i - 1], world});
     }
+    if (hidden_ > 0)
+      scene_.warnings.push_back(fmt::format("{} objects are hidden in the file and left out", hidden_));
   }
 
   mat4 placement(const aiString& name) const {
     const auto found = placed_.find(name.C_Str());
     return found == placed_.end() ? mat4(1) : found->second;
+  }
+
+  /// Full angles in assimp, half ones here. Collada has one angle; where the file has no extension with a
+  /// second one, assimp's is a guess from the exponent, and far too wide.
+  void read_cone(const aiLight& source, Light& light) {
+    float outer = source.mAngleOuterCone;
+    if (format_ == MeshFormat::kCollada) {
+      if (!outer_cones_) outer_cones_ = names_outer_cone();
+      if (!*outer_cones_) outer = source.mAngleInnerCone;
+    }
+    light.outer_cone = std::clamp(outer / 2, 0.0f, kPi / 2);
+    light.inner_cone = std::clamp(source.mAngleInnerCone / 2, 0.0f, light.outer_cone);
+  }
+
+  bool names_outer_cone() const {
+    const Result<Bytes> bytes = read_file_bytes(file_);
+    if (!bytes) return false;
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    for (const char* tag : {"<outer_cone", "<penumbra_angle", "<falloff>", "<decay_falloff"})
+      if (text.find(tag) != text.npos) return true;
+    return false;
   }
 
   void read_light(const aiLight& source) {
@@ -215,7 +172,7 @@ class MeshFileReader {
       light.kind = LightKind::kDirectional;
     else if (source.mType != aiLightSource_POINT) {
       scene_.warnings.push_back(
-          fmt::format("light \"{}\": ambient or area light; left out", source.mName.C_Str()));
+          fmt::format("light \"{}\": ambient or area light; left out", plain_text(source.mName.C_Str())));
       return;
     }
     const mat4 world = placement(source.mName);
@@ -223,8 +180,7 @@ class MeshFileReader {
     light.intensity = glm::max(to_vec3(source.mColorDiffuse), vec3(0));
     light.position = vec3(world * vec4(to_vec3(source.mPosition), 1));
     light.direction = normalize_or(mat3(world) * to_vec3(source.mDirection), vec3(0, 0, -1));
-    light.outer_cone = std::clamp(source.mAngleOuterCone / 2, 0.0f, kPi / 2);  // assimp's are full angles
-    light.inner_cone = std::clamp(source.mAngleInnerCone / 2, 0.0f, light.outer_cone);
+    if (light.kind == LightKind::kSpot) read_cone(source, light);
     scene_.lights.push_back(std::move(light));
   }
 
@@ -246,26 +202,18 @@ class MeshFileReader {
 
   const aiScene& source_;
   const std::string& file_;
+  MeshFormat format_;
   Scene scene_;
-  std::map<std::string, int32_t> images_;  ///< path -> Scene::images
-  std::map<std::string, mat4> placed_;     ///< nodes by name, which is how lights and cameras refer to them
+  size_t hidden_ = 0;
+  std::optional<bool> outer_cones_;     ///< of Collada: whether the file gives them
+  std::map<std::string, mat4> placed_;  ///< nodes by name, which is how lights and cameras refer to them
 };
 
 Result<Scene> read(const std::string& file) {
-  // Opened first for a plain message, and so that assimp never sees a device or a folder.
-  if (const Result<Bytes> bytes = read_file_bytes(file); !bytes)
-    return bytes.error();
-  else if (bytes->empty())
-    return bad_input(file, "", "the file is empty", "export it again");
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const unsigned steps =
-      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_GlobalScale;
-  const aiScene* source = importer.ReadFile(file, steps);
-  if (!source || (source->mFlags & AI_SCENE_FLAGS_INCOMPLETE))
-    return bad_input(file, "", fmt::format("assimp cannot read it: {}", importer.GetErrorString()),
-                     "export the file again, best as glTF");
-  return MeshFileReader(*source, file).read();
+  const Result<const aiScene*> source = import_mesh_file(file, importer);
+  if (!source) return source.error();
+  return MeshFileReader(**source, file).read();
 }
 
 }  // namespace
@@ -276,7 +224,7 @@ Result<Scene> read_mesh_file(const std::string& file) {
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::kLimit, "out of memory while reading", file, "", "close other programs"};
   } catch (const std::exception& problem) {
-    return bad_input(file, "", problem.what(), "export the file again");
+    return bad_input(file, "", plain_text(problem.what()), "export the file again");
   }
 }
 

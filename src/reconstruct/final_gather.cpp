@@ -41,6 +41,8 @@ Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown
       const vec3 b = seen_radiosity(link, solver.links().views(), shown);
       const float most = largest(b);
       if (most <= 0) continue;
+      const ElementKind kind = pool[link.source].kind;
+      const bool fills_sky = kind != ElementKind::kPoint && kind != ElementKind::kSun;  // has a solid angle
       const float little = 0.1f * options.ray_share * whole, weak = (link.mean + link.spread) * most;
       // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
       if (weak < little && (link.visibility == 0 || most_at(pool[link.source], x) * most < 10 * little)) {
@@ -48,21 +50,20 @@ Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown
         const float modelled = r.flat ? link.ambient + dot(x - r.centre, link.transfer)
                                       : std::max(0.0f, dot(n, link.transfer)) + link.ambient;
         sum += std::max(0.0f, modelled) * b;
-        faced += link.unoccluded;
-        seen += link.mean;
+        faced += fills_sky ? link.unoccluded : 0;
+        seen += fills_sky ? link.mean : 0;
         continue;
       }
       const vec3 m = point_transfer(pool, link.source, x, n);
       const float factor = dot(m, n);
       if (factor <= 0) continue;
-      const ElementKind kind = pool[link.source].kind;
       const uint32_t count = rays_for(factor * most / (whole + factor * most), link, kind, options);
       float visible = static_cast<float>(link.visibility) / 255.0f;
       if (count > 0)
         visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays, visible);
       if (is_surface(kind)) visible = std::min(visible, 1 / factor);
       sum += visible * factor * b;
-      if (kind == ElementKind::kPoint || kind == ElementKind::kSun) continue;
+      if (!fills_sky) continue;
       faced += factor;
       seen += visible * factor;
     }

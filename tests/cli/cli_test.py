@@ -59,9 +59,13 @@ class CliTest(unittest.TestCase):
 
     def test_bad_input_is_3(self):
         self.path("empty.glb").write_bytes(b"")
+        self.path("cut.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n")
+        self.path("really.obj").write_bytes(b"Kaydara FBX Binary  \0")
         for verb in (["info"], ["bake", "-o", "y.glb"]):
             self.assert_fails(3, ["nope.glb"], *verb, "nope.glb")
             self.assert_fails(3, ["empty.glb"], *verb, "empty.glb")
+            self.assert_fails(3, ["cut.ply", "cut off"], *verb, "cut.ply")
+            self.assert_fails(3, ["really.obj", ".fbx"], *verb, "really.obj")
         self.assertFalse(self.path("y.glb").exists())
 
     def test_nothing_to_bake_is_4(self):

@@ -122,6 +122,22 @@ TEST(ElementPool, SkyOctantsCoverTheSphere) {
   EXPECT_NEAR(sum, 4 * double(kPi), 1e-5);
 }
 
+TEST(ElementPool, SkyDirectionsAreSpreadEvenly) {
+  // The mean of all directions of an octant is half a unit along each axis.
+  Scene scene;
+  test::add(scene, shapes::cube(), test::add(scene, test::diffuse(0.5f)));
+  scene.sky.radiance = vec3(1);
+  const Elements elements(std::move(scene));
+  for (const ElementId octant : elements.pool->lights()) {
+    vec3 mean(0);
+    for (int i = 0; i < 64; ++i)
+      for (int j = 0; j < 64; ++j)
+        mean +=
+            elements.pool->sky_direction(octant, (float(i) + 0.5f) / 64, (float(j) + 0.5f) / 64) / 4096.0f;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::abs(mean[k]), 0.5f, 1e-3f);
+  }
+}
+
 /// Every way to get a point or a normal from an element agrees on the side: away from the box's middle on the
 /// front, towards it on the back.
 TEST(ElementPool, MirroredAndTwoSidedInstancesFaceTheRightWay) {

@@ -1,6 +1,7 @@
 // The scenes of our own baked at medium quality, judged by what stands in the written files.
 #include <gtest/gtest.h>
 
+#include "math/vec.h"
 #include "session/baked.h"
 
 namespace goldthread {
@@ -110,6 +111,21 @@ INSTANTIATE_TEST_SUITE_P(Medium, KnownAnswer,
                          [](const auto& info) {
                            return std::string(info.param.first) + std::to_string(info.param.second);
                          });
+
+TEST(OpenSky, AFaintSunTakesNothingFromIt) {
+  // pi * L on an open floor. Links that are too weak for rays must not count as a part of the hemisphere.
+  const TempFolder folder;
+  GltfBuilder b;
+  b.triangle({{"rotation", {-0.70710678, 0, 0, 0.70710678}}});  // faces up
+  BakeOptions options = draft(folder.write("floor.glb", to_glb(b)), {folder.path("lit.glb")});
+  options.sky = {1000, 1000, 1000};
+  options.sun = BakeOptions::Sun{0.03f};
+  baked(options);
+  const Range light = range_of(WrittenGltf(options.outputs[0]), "_IRRADIANCE");
+  ASSERT_GT(light.values, 0u);
+  EXPECT_GE(light.least, 0.99f * 1000 * kPi);
+  EXPECT_LE(light.most, 1.01f * 1000 * kPi);
+}
 
 class Repeated : public ::testing::TestWithParam<const char*> {};
 

@@ -183,6 +183,25 @@ TEST(Sky, AScreenTakesItsFormFactor) {
   EXPECT_NEAR(power(solved) / truth, 1, 0.005);
 }
 
+TEST(Sky, AWallTakesItsFormFactor) {
+  // A wall 3 high along one side of the plane hides all that would come through it: the form factor between
+  // rectangles at right angles with a common edge (Howell's catalogue, C-14), here with sides 1 and 3/4 of
+  // it.
+  const double w = 1, h = 0.75, d = w * w + h * h, all = 1 + d;
+  const double logs = std::log((1 + w * w) * (1 + h * h) / all) +
+                      w * w * std::log(w * w * all / ((1 + w * w) * d)) +
+                      h * h * std::log(h * h * all / ((1 + h * h) * d));
+  const double hidden =
+      (w * std::atan(1 / w) + h * std::atan(1 / h) - std::sqrt(d) * std::atan(1 / std::sqrt(d)) + logs / 4) /
+      (double(kPi) * w);
+  Scene scene = plane();
+  scene.sky.radiance = vec3(100);
+  test::add(scene, test::parallelogram({2, -2, 0}, {0, 0, 3}, {0, 4, 0}), test::add(scene, test::diffuse(0)));
+  Solved solved(std::move(scene));
+  solved.solve();
+  EXPECT_NEAR(power(solved) / (16 * 100 * double(kPi) * (1 - hidden)), 1, 0.005);
+}
+
 TEST(Panel, LambertsFormulaOnThePlane) {
   // A panel of 1 m^2 at 1 m: the irradiance below it is its exitance times the form factor.
   Scene scene = plane();

@@ -193,11 +193,11 @@ Status Bake::preprocess() {
   const auto bvh = Clock::now();
   {
     const WorldTriangles world = world_triangles(surfaces_);
-    PassThrough pass;
+    Transparency passing;
     if (!world.see_through.empty())
-      pass = [this](uint32_t t, vec2 w, const Ray& ray) { return passes(t, w, ray, surfaces_); };
+      passing = [this](uint32_t t, vec2 w, const Ray&) { return transparency(t, w, surfaces_); };
     caster_ =
-        std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(pass));
+        std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(passing));
     report_.seconds.ray_bvh = since(bvh);
     settle_overlaps(surfaces_, find_coincident(world.positions, world.triangles, *caster_),
                     caster_->epsilon());

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <limits>
 
-#include "base/rng.h"
 #include "element/paint.h"
 #include "math/colour.h"
 
@@ -62,15 +60,9 @@ std::string describe_overlaps(const SurfaceSet& surfaces) {
                      surfaces.overlapping);
 }
 
-bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces) {
+float transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces) {
   const Part& part = part_of_triangle(surfaces, triangle);
-  const float alpha = alpha_at(surfaces, part, triangle - part.first_triangle, weights);
-  if (alpha >= 1) return false;
-  if (alpha <= 0) return true;
-  const uint32_t a = hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
-  const uint32_t b =
-      hash(std::bit_cast<uint32_t>(ray.origin.x) ^ triangle, std::bit_cast<uint32_t>(ray.origin.z));
-  return unit_float(hash(a, b)) >= alpha;
+  return 1 - alpha_at(surfaces, part, triangle - part.first_triangle, weights);
 }
 
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) {

@@ -7,7 +7,6 @@
 #include "element/surface_set.h"
 #include "goldthread/bake.h"
 #include "scene/lighting.h"
-#include "visibility/ray_caster.h"
 
 namespace goldthread {
 
@@ -27,9 +26,9 @@ std::vector<std::string> describe_problems(const SurfaceSet& surfaces);
 /// The same about triangles in one place; empty when there are none.
 std::string describe_overlaps(const SurfaceSet& surfaces);
 
-/// Whether a ray goes through a triangle at a point: always where a mask has a hole, by chance where it is
-/// blended; the chance is a hash of the ray, so that it is the same every time.
-bool passes(uint32_t triangle, vec2 weights, const Ray& ray, const SurfaceSet& surfaces);
+/// Share of light that goes through a triangle of the world at a point: all of it where a mask has a hole,
+/// what its alpha leaves where it is blended.
+float transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces);
 
 /// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
 /// grey.

@@ -132,7 +132,7 @@ struct Counter {
       const float cosine = dot(x.normal, to_light);
       if (cosine <= 0) return 0.0;
       const Ray ray{x.position + solver.visibility().epsilon * x.normal, to_light};
-      return solver.visibility().caster->occluded(ray) ? 0.0 : static_cast<double>(cosine);
+      return static_cast<double>(cosine * solver.visibility().caster->transmittance(ray));
     });
     return share * by_area.total() * static_cast<double>(luminance(pool()[light].exitance));
   }

@@ -57,7 +57,7 @@ ShownScene::ShownScene(const Scene& scene, const Lighting& lighting) : scene_(sc
   if (triangles_.empty()) return;
   drawn_ = std::make_unique<RayCaster>(positions_, triangles_, marks,
                                        [this](uint32_t triangle, vec2 weights, const Ray& ray) {
-                                         return looked_through(triangle, weights, ray);
+                                         return looked_through(triangle, weights, ray) ? 1.0f : 0.0f;
                                        });
 }
 

@@ -6,63 +6,121 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <array>
+#include <bit>
 #include <vector>
 
 #include "base/check.h"
+#include "base/rng.h"
 #include "math/box.h"
 
 namespace goldthread {
 namespace {
 
 struct FilterData {
-  PassThrough pass;
+  Transparency transparency;
   std::vector<uint32_t> triangles;  // of the see-through geometry's primitives
 };
 
-// Embree asks this for every candidate hit on a see-through triangle; clearing `valid` lets the ray go on.
-void filter(const RTCFilterFunctionNArguments* args) {
+#if GOLDTHREAD_EMBREE >= 4
+using Context = RTCRayQueryContext;
+void init_context(Context& context) {
+  rtcInitRayQueryContext(&context);
+}
+#else
+using Context = RTCIntersectContext;
+void init_context(Context& context) {
+  rtcInitIntersectContext(&context);
+}
+#endif
+
+// What one query for shadows knows besides its rays: how much of each one's light is left, by the ray's id.
+struct ShadowContext {
+  Context embree;  // first, so that a pointer to it is one to all
+  std::array<float, 16> left;
+
+  ShadowContext() {
+    init_context(embree);
+    left.fill(1);
+  }
+};
+
+struct Candidate {
+  Ray ray;
+  uint32_t triangle = 0;
+  float passing = 0;
+};
+
+Candidate candidate(const RTCFilterFunctionNArguments* args, unsigned i) {
   const auto* data = static_cast<const FilterData*>(args->geometryUserPtr);
+  Candidate c;
+  c.ray.origin = {RTCRayN_org_x(args->ray, args->N, i), RTCRayN_org_y(args->ray, args->N, i),
+                  RTCRayN_org_z(args->ray, args->N, i)};
+  c.ray.direction = {RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                     RTCRayN_dir_z(args->ray, args->N, i)};
+  c.triangle = data->triangles[RTCHitN_primID(args->hit, args->N, i)];
+  c.passing = data->transparency(c.triangle,
+                                 {RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)}, c.ray);
+  return c;
+}
+
+float coin(const Candidate& c) {
+  const uint32_t a =
+      hash(std::bit_cast<uint32_t>(c.ray.direction.x), std::bit_cast<uint32_t>(c.ray.direction.y));
+  const uint32_t b =
+      hash(std::bit_cast<uint32_t>(c.ray.origin.x) ^ c.triangle, std::bit_cast<uint32_t>(c.ray.origin.z));
+  return unit_float(hash(a, b));
+}
+
+// Embree asks these for every candidate hit on a see-through triangle; clearing `valid` lets the ray go on.
+void filter_closest(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    Ray ray;
-    ray.origin = {RTCRayN_org_x(args->ray, args->N, i), RTCRayN_org_y(args->ray, args->N, i),
-                  RTCRayN_org_z(args->ray, args->N, i)};
-    ray.direction = {RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
-                     RTCRayN_dir_z(args->ray, args->N, i)};
-    const uint32_t triangle = data->triangles[RTCHitN_primID(args->hit, args->N, i)];
-    const vec2 weights{RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)};
-    if (data->pass(triangle, weights, ray)) args->valid[i] = 0;
+    const Candidate c = candidate(args, i);
+    if (c.passing > 0 && coin(c) < c.passing) args->valid[i] = 0;
+  }
+}
+
+void filter_shadow(const RTCFilterFunctionNArguments* args) {
+  auto* context = reinterpret_cast<ShadowContext*>(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    float& left = context->left[RTCRayN_id(args->ray, args->N, i)];
+    left *= candidate(args, i).passing;
+    if (left > 0) args->valid[i] = 0;
   }
 }
 
 // One call of Embree; both versions share the names but not the signatures.
-void occluded1(RTCScene scene, RTCRay* ray) {
-#if GOLDTHREAD_EMBREE >= 4
-  rtcOccluded1(scene, ray, nullptr);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, ray);
-#endif
-}
-
 void intersect1(RTCScene scene, RTCRayHit* hit) {
 #if GOLDTHREAD_EMBREE >= 4
   rtcIntersect1(scene, hit, nullptr);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Context context;
+  init_context(context);
   rtcIntersect1(scene, &context, hit);
 #endif
 }
 
-void occluded16(RTCScene scene, const int* valid, RTCRay16* rays) {
+void occluded1(RTCScene scene, RTCRay* ray, ShadowContext& context) {
 #if GOLDTHREAD_EMBREE >= 4
-  rtcOccluded16(valid, scene, rays, nullptr);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context.embree;
+  rtcOccluded1(scene, ray, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, scene, &context, rays);
+  rtcOccluded1(scene, &context.embree, ray);
+#endif
+}
+
+void occluded16(RTCScene scene, const int* valid, RTCRay16* rays, ShadowContext& context) {
+#if GOLDTHREAD_EMBREE >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context.embree;
+  rtcOccluded16(valid, scene, rays, &arguments);
+#else
+  rtcOccluded16(valid, scene, &context.embree, rays);
 #endif
 }
 
@@ -125,8 +183,8 @@ struct RayCaster::State {
     for (size_t i = 0; i < count; ++i) indices[i] = triangles[subset != nullptr ? (*subset)[i] : i];
     if (id == 1) {
       rtcSetGeometryUserData(geometry, &see_through);
-      rtcSetGeometryOccludedFilterFunction(geometry, filter);
-      rtcSetGeometryIntersectFilterFunction(geometry, filter);
+      rtcSetGeometryOccludedFilterFunction(geometry, filter_shadow);
+      rtcSetGeometryIntersectFilterFunction(geometry, filter_closest);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
@@ -135,7 +193,7 @@ struct RayCaster::State {
 };
 
 RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> triangles,
-                     std::span<const uint8_t> see_through, PassThrough pass)
+                     std::span<const uint8_t> see_through, Transparency transparency)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.epsilon = epsilon_for(positions);
@@ -151,7 +209,7 @@ RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> tri
   s.scene = rtcNewScene(s.device);
   rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s.scene, RTC_BUILD_QUALITY_MEDIUM);
-  s.see_through.pass = std::move(pass);
+  s.see_through.transparency = std::move(transparency);
   for (size_t i = 0; i < see_through.size(); ++i)
     if (see_through[i] != 0) s.see_through.triangles.push_back(static_cast<uint32_t>(i));
   if (s.see_through.triangles.empty()) {
@@ -184,15 +242,20 @@ Hit RayCaster::closest(const Ray& ray) const {
   return hit;
 }
 
-bool RayCaster::occluded(const Ray& ray) const {
+float RayCaster::transmittance(const Ray& ray) const {
   RTCRay query = to_embree(ray);
-  occluded1(state_->scene, &query);
-  return query.tfar < 0;  // Embree marks a blocked ray by tfar = -inf
+  ShadowContext context;
+  occluded1(state_->scene, &query, context);
+  return query.tfar < 0 ? 0.0f : context.left[0];  // Embree marks a blocked ray by tfar = -inf
 }
 
-uint32_t RayCaster::occluded_packet(std::span<const Ray> rays) const {
+void RayCaster::transmittance(std::span<const Ray> rays, std::span<float> out) const {
   GOLDTHREAD_CHECK_LE(rays.size(), size_t{16});
-  if (rays.size() == 1) return occluded(rays[0]) ? 1u : 0u;
+  GOLDTHREAD_CHECK_EQ(rays.size(), out.size());
+  if (rays.size() == 1) {
+    out[0] = transmittance(rays[0]);
+    return;
+  }
   alignas(64) int valid[16];
   alignas(64) RTCRay16 packet;
   for (size_t i = 0; i < 16; ++i) {
@@ -208,14 +271,12 @@ uint32_t RayCaster::occluded_packet(std::span<const Ray> rays) const {
     packet.tfar[i] = ray.far;
     packet.time[i] = 0;
     packet.mask[i] = 0xffffffffu;
-    packet.id[i] = 0;
+    packet.id[i] = static_cast<unsigned>(i);
     packet.flags[i] = 0;
   }
-  occluded16(state_->scene, valid, &packet);
-  uint32_t blocked = 0;
-  for (size_t i = 0; i < rays.size(); ++i)
-    if (packet.tfar[i] < 0) blocked |= 1u << i;
-  return blocked;
+  ShadowContext context;
+  occluded16(state_->scene, valid, &packet, context);
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = packet.tfar[i] < 0 ? 0.0f : context.left[i];
 }
 
 void RayCaster::near(const vec3& point, float radius, const std::function<void(uint32_t)>& visit) const {

@@ -27,27 +27,28 @@ struct Hit {
   bool missed() const { return triangle == kMiss; }
 };
 
-/// Decides whether a ray passes through `triangle` at barycentric `weights` (alpha mask and blend). Called
-/// from many threads at once; must be a pure function of its arguments.
-using PassThrough = std::function<bool(uint32_t triangle, vec2 weights, const Ray& ray)>;
+/// Share of a ray's light, 0..1, that goes on through `triangle` at barycentric `weights` (alpha mask and
+/// blend). Called from many threads at once; must be a pure function of its arguments.
+using Transparency = std::function<float(uint32_t triangle, vec2 weights, const Ray& ray)>;
 
 /// A static soup of world-space triangles. Thread safe once built.
 class RayCaster {
  public:
-  /// `see_through` marks, per triangle, those for which `pass` is asked; both may be empty. The arrays are
-  /// copied into Embree's own buffers and may be dropped afterwards.
+  /// `see_through` marks, per triangle, those for which `transparency` is asked; both may be empty. The
+  /// arrays are copied into Embree's own buffers and may be dropped afterwards.
   RayCaster(std::span<const vec3> positions, std::span<const UVec3> triangles,
-            std::span<const uint8_t> see_through = {}, PassThrough pass = {});
+            std::span<const uint8_t> see_through = {}, Transparency transparency = {});
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
 
-  /// The nearest hit.
+  /// The nearest hit. What is partly transparent stops its share of rays: which, a hash of ray and triangle
+  /// says, so that it is the same every time.
   Hit closest(const Ray& ray) const;
-  /// Whether anything lies between near and far.
-  bool occluded(const Ray& ray) const;
-  /// `occluded` for up to 16 rays at once, as a packet: bit i is set where ray i is blocked.
-  uint32_t occluded_packet(std::span<const Ray> rays) const;
+  /// Share of light that gets from near to far: the product over all that lies between.
+  float transmittance(const Ray& ray) const;
+  /// `transmittance` for up to 16 rays at once, as a packet; `out` is as long as `rays`.
+  void transmittance(std::span<const Ray> rays, std::span<float> out) const;
 
   /// Calls `visit(triangle)` for every triangle that comes within `radius` of `point`, and for some others
   /// that are not far, in no order.

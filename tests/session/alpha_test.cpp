@@ -43,7 +43,7 @@ Scene under_screen(Material screen, bool sun) {
 }
 
 double floor_mean(Scene scene) {
-  Solved solved(std::move(scene), {}, passes);
+  Solved solved(std::move(scene), {}, transparency);
   solved.solve();
   double sum = 0, area = 0;
   for (const ElementId id : solved.leaves()) {
@@ -64,8 +64,31 @@ TEST(Alpha, BlendLetsItsShareThrough) {
     Material screen = test::diffuse(0);
     screen.alpha_mode = AlphaMode::kBlend;
     screen.alpha = alpha;
-    EXPECT_NEAR(floor_mean(under_screen(screen, true)) / 1000, 1 - double(alpha), 0.02) << alpha;
+    EXPECT_NEAR(floor_mean(under_screen(screen, true)) / 1000, 1 - double(alpha), 1e-4) << alpha;
   }
+}
+
+TEST(Alpha, TwoBlendsLetTheProductThrough) {
+  Material screen = test::diffuse(0);
+  screen.alpha_mode = AlphaMode::kBlend;
+  screen.alpha = 0.4f;
+  Scene scene = under_screen(screen, true);
+  scene.instances.push_back(scene.instances[1]);
+  scene.instances[2].transform = test::move({0, 0, 0.7f});
+  EXPECT_NEAR(floor_mean(std::move(scene)) / 1000, 0.36, 1e-4);
+}
+
+TEST(Alpha, NoSpotOfTheFloorIsNoisy) {
+  Material screen = test::diffuse(0);
+  screen.alpha_mode = AlphaMode::kBlend;
+  screen.alpha = 0.6f;
+  Solved solved(under_screen(screen, true), {}, transparency);
+  solved.solve();
+  const test::Summary floor = summarise(solved, [&](ElementId id) {
+    return solved.pool()[id].part == 0 ? solved.state().irradiance[id].x : 400.0f;
+  });
+  EXPECT_NEAR(floor.least, 400, 0.1);
+  EXPECT_NEAR(floor.most, 400, 0.1);
 }
 
 TEST(Alpha, MaskLetsLightThroughItsHoles) {
@@ -102,7 +125,7 @@ TEST(Alpha, PowerIsKept) {
   Material screen = test::diffuse(0.5f);
   screen.alpha_mode = AlphaMode::kBlend;
   screen.alpha = 0.5f;
-  Solved solved(under_screen(screen, true), {}, passes);
+  Solved solved(under_screen(screen, true), {}, transparency);
   solved.solve();
   const PowerBalance power = measure_power(*solved.solver, 400000, 1);
   EXPECT_GT(power.emitted, 0);

@@ -18,20 +18,20 @@ struct Solved {
   std::unique_ptr<RayCaster> caster;
   std::unique_ptr<HierarchicalSolver> solver;
 
-  /// `passes(triangle, weights, ray, set)` decides for see-through triangles.
-  template <typename Passes>
-  Solved(Scene s, const SolveOptions& options, Passes passes) : scene(std::make_unique<Scene>(std::move(s))) {
+  /// `passing(triangle, weights, set)` says how much light see-through triangles let through.
+  template <typename Passing>
+  Solved(Scene s, const SolveOptions& options, Passing passing)
+      : scene(std::make_unique<Scene>(std::move(s))) {
     set = std::make_unique<SurfaceSet>(build_surfaces(*scene, CancelToken()));
     const WorldTriangles world = world_triangles(*set);
-    caster = std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through,
-                                         [surfaces = set.get(), passes](uint32_t t, vec2 w, const Ray& ray) {
-                                           return passes(t, w, ray, *surfaces);
-                                         });
+    caster = std::make_unique<RayCaster>(
+        world.positions, world.triangles, world.see_through,
+        [surfaces = set.get(), passing](uint32_t t, vec2 w, const Ray&) { return passing(t, w, *surfaces); });
     settle_overlaps(*set, find_coincident(world.positions, world.triangles, *caster), caster->epsilon());
     solver = std::make_unique<HierarchicalSolver>(*set, *caster, options);
   }
   explicit Solved(Scene s, const SolveOptions& options = {})
-      : Solved(std::move(s), options, [](uint32_t, vec2, const Ray&, const SurfaceSet&) { return false; }) {}
+      : Solved(std::move(s), options, [](uint32_t, vec2, const SurfaceSet&) { return 0.0f; }) {}
 
   Solved& solve() {
     const CancelToken never;

@@ -46,7 +46,7 @@ TEST(RayCasterNear, NumbersSeeThroughTrianglesAsGiven) {
   world.quad({0, 0, 1}, {1, 0, 0}, {0, 1, 0});
   const std::vector<uint8_t> see_through{1, 1, 0, 0};
   const RayCaster caster(world.positions, world.triangles, see_through,
-                         [](uint32_t, vec2, const Ray&) { return true; });
+                         [](uint32_t, vec2, const Ray&) { return 1.0f; });
   for (const float z : {0.0f, 1.0f}) {
     std::set<uint32_t> seen;
     caster.near({0.4f, 0.4f, z}, 0.1f, [&](uint32_t t) { seen.insert(t); });

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <random>
 #include <vector>
@@ -77,9 +78,9 @@ TEST(RayCaster, NearAndFar) {
   world.floor_at(0);
   const RayCaster caster(world.positions, world.triangles);
   const auto ray = [](float near, float far) { return Ray{{0.3f, 0.1f, 1}, {0, 0, -1}, near, far}; };
-  EXPECT_TRUE(caster.occluded(ray(0, 1.5f)));
-  EXPECT_FALSE(caster.occluded(ray(0, 0.999f)));
-  EXPECT_FALSE(caster.occluded(ray(1.001f, 5)));
+  EXPECT_EQ(caster.transmittance(ray(0, 1.5f)), 0);
+  EXPECT_EQ(caster.transmittance(ray(0, 0.999f)), 1);
+  EXPECT_EQ(caster.transmittance(ray(1.001f, 5)), 1);
   EXPECT_TRUE(caster.closest(ray(0, 0.999f)).missed());
   EXPECT_TRUE(caster.closest(ray(1.001f, 5)).missed());
   EXPECT_FALSE(caster.closest(ray(0.999f, 1.001f)).missed());
@@ -89,7 +90,9 @@ TEST(RayCaster, EmptyWorldBlocksNothing) {
   const RayCaster caster({}, {});
   EXPECT_TRUE(caster.closest({{0, 0, 0}, {0, 0, 1}}).missed());
   const std::vector<Ray> rays(16, Ray{{0, 0, 0}, {0, 0, 1}});
-  EXPECT_EQ(caster.occluded_packet(rays), 0u);
+  std::vector<float> passing(rays.size(), -1);
+  caster.transmittance(rays, passing);
+  EXPECT_EQ(passing, std::vector<float>(rays.size(), 1));
 }
 
 RC_GTEST_PROP(RayCaster, AllQuestionsAgreeWithTheDefinition, (uint32_t seed)) {
@@ -101,8 +104,8 @@ RC_GTEST_PROP(RayCaster, AllQuestionsAgreeWithTheDefinition, (uint32_t seed)) {
     ray = {2.0f * random.point(), 2.0f * random.point()};
     if (random.in(0, 1) < 0.5f) ray.far = random.in(0.2f, 2);
   }
-  const uint32_t packet = caster.occluded_packet(rays);
-  RC_ASSERT(packet >> (rays.size() - 1) <= 1u);  // no bits beyond the rays
+  std::vector<float> passing(rays.size(), -1);
+  caster.transmittance(rays, passing);
   for (size_t i = 0; i < rays.size(); ++i) {
     double nearest = INFINITY;
     for (const UVec3& t : world.triangles) {
@@ -111,8 +114,8 @@ RC_GTEST_PROP(RayCaster, AllQuestionsAgreeWithTheDefinition, (uint32_t seed)) {
     }
     const bool edge = std::abs(nearest - double(rays[i].far)) < 1e-4;
     const Hit hit = caster.closest(rays[i]);
-    RC_ASSERT(hit.missed() == !caster.occluded(rays[i]));
-    RC_ASSERT(hit.missed() == ((packet >> i & 1) == 0));
+    RC_ASSERT(caster.transmittance(rays[i]) == (hit.missed() ? 1.0f : 0.0f));
+    RC_ASSERT(passing[i] == (hit.missed() ? 1.0f : 0.0f));
     if (edge) continue;
     // Rounding at a triangle's rim may decide either way, but then the next hit is another or none: rare.
     if (nearest < double(rays[i].far) && !hit.missed()) RC_ASSERT(double(hit.distance) <= nearest + 1e-3);
@@ -134,7 +137,7 @@ TEST(RayCaster, SeeThroughTrianglesAreAsked) {
                            const vec3 p = (1 - weights.x - weights.y) * world.positions[t.x] +
                                           weights.x * world.positions[t.y] + weights.y * world.positions[t.z];
                            if (marks[triangle] == 0 || std::abs(p.x - ray.origin.x) > 1e-5f) ++wrong;
-                           return p.x < 0;  // the left half is a hole
+                           return p.x < 0 ? 1.0f : 0.0f;  // the left half is a hole
                          });
   const auto down = [](float x, float z, float far) { return Ray{{x, 0.3f, z}, {0, 0, -1}, 0, far}; };
   EXPECT_EQ(caster.closest(down(0.5f, 3, 9)).triangle / 2, 0u);
@@ -144,21 +147,58 @@ TEST(RayCaster, SeeThroughTrianglesAreAsked) {
   EXPECT_GT(asked, 0);
   std::vector<Ray> rays;
   for (int i = 0; i < 16; ++i) rays.push_back(down(-0.9f + 0.12f * float(i), 3, 1.5f));
-  const uint32_t packet = caster.occluded_packet(rays);
+  std::vector<float> passing(rays.size());
+  caster.transmittance(rays, passing);
   for (size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(packet >> i & 1, rays[i].origin.x < 0 ? 0u : 1u) << i;
-    EXPECT_EQ(caster.occluded(rays[i]), rays[i].origin.x >= 0) << i;
+    EXPECT_EQ(passing[i], rays[i].origin.x < 0 ? 1 : 0) << i;
+    EXPECT_EQ(caster.transmittance(rays[i]), passing[i]) << i;
   }
   EXPECT_EQ(wrong, 0);
+}
+
+TEST(RayCaster, LightPassesLayersByTheirProduct) {
+  World world;
+  for (int k = 0; k < 3; ++k) world.floor_at(float(k));  // the lowest opaque
+  const std::vector<uint8_t> marks{0, 0, 1, 1, 1, 1};
+  const RayCaster caster(world.positions, world.triangles, marks,
+                         [](uint32_t triangle, vec2, const Ray&) { return triangle < 4 ? 0.5f : 0.25f; });
+  std::vector<Ray> rays;
+  std::vector<float> expected;
+  for (int i = 0; i < 16; ++i) {
+    rays.push_back({{-0.8f + 0.1f * float(i), 0.3f, 3}, {0, 0, -1}, 0, 0.5f + float(i % 4)});
+    expected.push_back(std::array{1.0f, 0.25f, 0.125f, 0.0f}[size_t(i % 4)]);
+  }
+  std::vector<float> passing(rays.size());
+  caster.transmittance(rays, passing);
+  EXPECT_EQ(passing, expected);
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(caster.transmittance(rays[i]), expected[i]);
+}
+
+TEST(RayCaster, ABlendStopsItsShareOfRays) {
+  World world;
+  world.floor_at(0);
+  const std::vector<uint8_t> marks{1, 1};
+  const RayCaster caster(world.positions, world.triangles, marks,
+                         [](uint32_t, vec2, const Ray&) { return 0.3f; });
+  Random random{std::mt19937(5)};
+  int passed = 0;
+  constexpr int kRays = 20000;
+  for (int i = 0; i < kRays; ++i) {
+    const Ray ray{{random.in(-0.9f, 0.9f), random.in(-0.9f, 0.9f), 1}, {0, 0, -1}};
+    const bool through = caster.closest(ray).missed();
+    EXPECT_EQ(through, caster.closest(ray).missed());  // the same every time
+    passed += through ? 1 : 0;
+  }
+  EXPECT_NEAR(double(passed) / kRays, 0.3, 0.015);
 }
 
 TEST(RayCaster, MovesWithItsFilter) {
   World world;
   world.floor_at(0);
   const std::vector<uint8_t> marks{1, 1};
-  RayCaster first(world.positions, world.triangles, marks, [](uint32_t, vec2, const Ray&) { return true; });
+  RayCaster first(world.positions, world.triangles, marks, [](uint32_t, vec2, const Ray&) { return 1.0f; });
   const RayCaster second(std::move(first));
-  EXPECT_FALSE(second.occluded({{0.3f, 0.1f, 1}, {0, 0, -1}}));
+  EXPECT_EQ(second.transmittance({{0.3f, 0.1f, 1}, {0, 0, -1}}), 1);
 }
 
 }  // namespace

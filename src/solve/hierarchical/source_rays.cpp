@@ -25,14 +25,21 @@ Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const
   return ray;
 }
 
-uint32_t timed_packet(const RayCaster& caster, std::span<const Ray> rays, RayCount& count) {
+// Transmittance of each of up to 16 rays.
+void timed_packet(const RayCaster& caster, std::span<const Ray> rays, std::span<float> passing,
+                  RayCount& count) {
   const auto start = std::chrono::steady_clock::now();
-  const uint32_t blocked = caster.occluded_packet(rays);
+  caster.transmittance(rays, passing);
   const auto time = std::chrono::steady_clock::now() - start;
   count.rays += rays.size();
   count.nanoseconds +=
       static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
-  return blocked;
+}
+
+float timed_ray(const RayCaster& caster, const Ray& ray, RayCount& count) {
+  float passing = 0;
+  timed_packet(caster, {&ray, 1}, {&passing, 1}, count);
+  return passing;
 }
 
 // Draws points of a source as one point sees them.
@@ -90,7 +97,7 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
   SeenShare sum;
   std::array<Ray, kPacket> found, packet;
   std::array<SurfacePoint, kPacket> at;
-  std::array<float, kPacket> weight, share;
+  std::array<float, kPacket> weight, share, passing;
   std::array<uint32_t, kPacket> chosen;
   for (uint32_t first = 0; first < rays; first += kPacket) {
     const uint32_t batch = std::min(kPacket, rays - first);
@@ -121,12 +128,13 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
       packet[k] = found[chosen[k]];
       share[k] *= static_cast<float>(batch) / static_cast<float>(looked * rays);
     }
-    const uint32_t blocked = timed_packet(*caster, {packet.data(), cast}, count);
+    timed_packet(*caster, {packet.data(), cast}, {passing.data(), cast}, count);
     for (uint32_t k = 0; k < cast; ++k) {
-      ((blocked >> k & 1) != 0 ? sum.hidden : sum.seen) += share[k];
-      if ((blocked >> k & 1) != 0 || !keep || places->count == SeenPoints::kMost) continue;
+      sum.seen += share[k] * passing[k];
+      sum.hidden += share[k] * (1 - passing[k]);
+      if (passing[k] <= 0 || !keep || places->count == SeenPoints::kMost) continue;
       places->points[places->count] = at[chosen[k]];
-      places->weights[places->count++] = share[k];
+      places->weights[places->count++] = share[k] * passing[k];
     }
   }
   return sum;
@@ -142,7 +150,7 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
       ray.direction = e.centre - origin;
       ray.far = 0.9999f;
     }
-    return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
+    return timed_ray(*caster, ray, count);
   }
   const SeenShare share = look(pool, source, x, n, rays, seed, count);
   if (share.seen + share.hidden > 0) return share.seen / (share.seen + share.hidden);
@@ -153,7 +161,7 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   if (distance <= 1.01f * e.radius) return unknown;
   Ray ray{origin, to_centre};
   ray.far = 1 - 1.01f * e.radius / distance;
-  return timed_packet(*caster, {&ray, 1}, count) != 0 ? 0.0f : 1.0f;
+  return timed_ray(*caster, ray, count);
 }
 
 }  // namespace goldthread

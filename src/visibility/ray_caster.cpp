@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace goldthread {
 namespace {
@@ -85,6 +86,7 @@ struct RayCaster::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::atomic<int64_t> bytes{0};
+  LoopOrder building;            // Embree counts its memory on all threads
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;
 
@@ -125,7 +127,8 @@ RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> tri
   rtcSetDeviceMemoryMonitorFunction(
       s.device,
       [](void* user, ssize_t bytes, bool) {
-        static_cast<State*>(user)->bytes.fetch_add(bytes, std::memory_order_relaxed);
+        auto& state = *static_cast<State*>(user);
+        state.building.run([&] { state.bytes.fetch_add(bytes, std::memory_order_relaxed); });
         return true;
       },
       &s);

@@ -1,7 +1,5 @@
 #include "cluster/regions.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -32,8 +30,8 @@ void sort_into_boxes(std::span<Centre> centres, size_t region_triangles) {
                      return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis]
                                                                  : a.triangle < b.triangle;
                    });
-  tbb::parallel_invoke([&] { sort_into_boxes(centres.first(half), region_triangles); },
-                       [&] { sort_into_boxes(centres.subspan(half), region_triangles); });
+  parallel_invoke([&] { sort_into_boxes(centres.first(half), region_triangles); },
+                  [&] { sort_into_boxes(centres.subspan(half), region_triangles); });
 }
 
 /// The spans at which sort_into_boxes() ended.

@@ -2,7 +2,6 @@
 // partition.
 #include "cluster/volume_cluster_tree.h"
 
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -56,7 +55,7 @@ class Builder {
   }
 
   void build() {
-    tbb::parallel_invoke([&] { sort_along(0); }, [&] { sort_along(1); }, [&] { sort_along(2); });
+    parallel_invoke([&] { sort_along(0); }, [&] { sort_along(1); }, [&] { sort_along(2); });
     split({sorted_[0], sorted_[1], sorted_[2]}, 0, 0, 0);
   }
 
@@ -94,7 +93,7 @@ class Builder {
     const auto go_back = [&] {
       if (count - left > 1) split(back, back_node, first + left, depth + 1);
     };
-    if (count > kParallelAbove) return tbb::parallel_invoke(go_front, go_back);
+    if (count > kParallelAbove) return parallel_invoke(go_front, go_back);
     go_front();
     go_back();
   }

@@ -96,11 +96,14 @@ std::vector<uint32_t> find_twins(const TriangleMesh& mesh) {
   std::vector<uint32_t> by_vertex(half_edges);
   for_half_edges([&](size_t h, uint32_t low) { by_vertex[add(place[low + 1])] = uint32_t(h); });
   std::vector<uint32_t> twins(half_edges, kNoTwin);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices, kGrain / 4), [&](const auto& range) {
-    std::vector<Spoke> spokes;
-    for (size_t v = range.begin(); v != range.end(); ++v)
-      pair_vertex(mesh, std::span(by_vertex).subspan(place[v], place[v + 1] - place[v]), spokes, twins);
-  });
+  parallel_ranges(
+      vertices,
+      [&](size_t begin, size_t end) {
+        std::vector<Spoke> spokes;
+        for (size_t v = begin; v != end; ++v)
+          pair_vertex(mesh, std::span(by_vertex).subspan(place[v], place[v + 1] - place[v]), spokes, twins);
+      },
+      kGrain / 4);
   return twins;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 #include "math/box.h"
 
@@ -155,6 +156,7 @@ struct RayCaster::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::atomic<int64_t> bytes{0};
+  LoopOrder building;            // Embree counts its memory on all threads
   float epsilon = 0;
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;
@@ -202,7 +204,8 @@ RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> tri
   rtcSetDeviceMemoryMonitorFunction(
       s.device,
       [](void* user, ssize_t bytes, bool) {
-        static_cast<State*>(user)->bytes.fetch_add(bytes, std::memory_order_relaxed);
+        auto& state = *static_cast<State*>(user);
+        state.building.run([&] { state.bytes.fetch_add(bytes, std::memory_order_relaxed); });
         return true;
       },
       &s);

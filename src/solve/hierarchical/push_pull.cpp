@@ -1,9 +1,9 @@
 #include "solve/hierarchical/push_pull.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <array>
+
+#include "base/parallel.h"
 
 namespace goldthread {
 
@@ -139,8 +139,8 @@ struct Sweep {
     if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct, direct_share);
     float left = 0, right = 0;
     if (e.depth < 12) {
-      tbb::parallel_invoke([&] { left = visit(e.first_child, octants); },
-                           [&] { right = visit(e.first_child + 1, octants); });
+      parallel_invoke([&] { left = visit(e.first_child, octants); },
+                      [&] { right = visit(e.first_child + 1, octants); });
     } else {
       left = visit(e.first_child, octants);
       right = visit(e.first_child + 1, octants);

@@ -145,18 +145,16 @@ void bench_twins(benchmark::State& state) {
   report(state, source.triangles(), before);
 }
 
-std::vector<VolumeItem> items_of(const FaceClusterTree& tree) {
-  std::vector<VolumeItem> items;
+std::vector<Box> items_of(const FaceClusterTree& tree) {
+  std::vector<Box> items;
   for (const ClusterRef root : tree.roots) {
-    VolumeItem& item = items.emplace_back();
+    Box& item = items.emplace_back();
     if (is_triangle(root)) {
-      for (int k = 0; k < 3; ++k)
-        item.box.add(tree.mesh.positions[tree.mesh.triangles[triangle_of(root)][k]]);
+      for (int k = 0; k < 3; ++k) item.add(tree.mesh.positions[tree.mesh.triangles[triangle_of(root)][k]]);
       continue;
     }
-    item.box.add(tree.nodes[root].centre - tree.nodes[root].radius);
-    item.box.add(tree.nodes[root].centre + tree.nodes[root].radius);
-    item.facing = tree.nodes[root].summed_normal / tree.nodes[root].area;
+    item.add(tree.nodes[root].centre - tree.nodes[root].radius);
+    item.add(tree.nodes[root].centre + tree.nodes[root].radius);
   }
   return items;
 }
@@ -192,13 +190,13 @@ void bench_face_clusters(benchmark::State& state) {
 }
 
 void bench_volume_clusters(benchmark::State& state) {
-  std::vector<VolumeItem> items(size_t(state.range(0)));
+  std::vector<Box> items(size_t(state.range(0)));
   uint32_t random = 1;
   const auto next = [&random] { return float((random = random * 1664525 + 1013904223) >> 8) * 0x1p-24f; };
-  for (VolumeItem& item : items) {
+  for (Box& item : items) {
     const vec3 p(next(), next(), next());
-    item.box.add(p);
-    item.box.add(p + 0.01f * vec3(next(), next(), next()));
+    item.add(p);
+    item.add(p + 0.01f * vec3(next(), next(), next()));
   }
   const size_t before = heap_now;
   start_heap();

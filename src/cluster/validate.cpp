@@ -98,7 +98,7 @@ void validate(const FaceClusterTree& tree) {
   }
 }
 
-void validate(const VolumeClusterTree& tree, std::span<const VolumeItem> items) {
+void validate(const VolumeClusterTree& tree, std::span<const Box> items) {
   GOLDTHREAD_CHECK_EQ(tree.nodes.size(), items.size() < 2 ? 0 : items.size() - 1);
   std::vector<bool> seen(items.size(), false);
   for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
@@ -111,7 +111,7 @@ void validate(const VolumeClusterTree& tree, std::span<const VolumeItem> items) 
         GOLDTHREAD_CHECK_LT(size_t(item), items.size());
         GOLDTHREAD_CHECK_EQ(bool(seen[item]), false);
         seen[item] = true;
-        box.add(items[item].box);
+        box.add(items[item]);
         continue;
       }
       GOLDTHREAD_CHECK_LT(i, child);

@@ -17,23 +17,6 @@ constexpr size_t kParallelAbove = 2048;  ///< items below which a subtree is one
 
 using Lists = std::array<std::span<uint32_t>, 3>;
 
-/// What a side of a split costs by: its box, and how far its items face different ways.
-struct Side {
-  Box box;
-  vec3 facing{0};
-  float facing_weight = 0;
-
-  void add(const Box& item_box, const vec3& item_facing) {
-    box.add(item_box);
-    facing += item_facing;
-    facing_weight += length(item_facing);
-  }
-  /// 0 when all face one way, 1 when they cancel or face nowhere.
-  float spread() const {
-    return facing_weight > 0 ? std::max(0.0f, 1 - length(facing) / facing_weight) : 1.0f;
-  }
-};
-
 struct Split {
   float cost = std::numeric_limits<float>::infinity();
   int axis = 0;
@@ -42,8 +25,7 @@ struct Split {
 
 class Builder {
  public:
-  Builder(std::span<const VolumeItem> items, const VolumeClusterOptions& options, VolumeClusterTree& tree)
-      : items_(items), orientation_(std::max(options.orientation, 0.0f)), tree_(tree) {
+  Builder(std::span<const Box> items, VolumeClusterTree& tree) : items_(items), tree_(tree) {
     for (auto& list : sorted_) list.resize(items.size());
     on_left_.resize(items.size());
     moved_.resize(items.size());
@@ -61,7 +43,7 @@ class Builder {
 
  private:
   float key(uint32_t item, int axis) const {
-    return 0.5f * items_[item].box.low[axis] + 0.5f * items_[item].box.high[axis];
+    return 0.5f * items_[item].low[axis] + 0.5f * items_[item].high[axis];
   }
 
   void sort_along(int axis) {
@@ -77,7 +59,7 @@ class Builder {
   void split(const Lists& lists, uint32_t node, size_t first, size_t depth) {
     const size_t count = lists[0].size();
     VolumeCluster& cluster = tree_.nodes[node];
-    for (const uint32_t i : lists[0]) cluster.box.add(items_[i].box);
+    for (const uint32_t i : lists[0]) cluster.box.add(items_[i]);
     const size_t left = partition(lists, best_split(lists, cluster.box, first, depth), first);
     Lists front, back;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -116,30 +98,18 @@ class Builder {
     return true;
   }
 
-  float cost(const Side& side, size_t count) const {
-    const float area = side.box.surface_area() * float(count);
-    return orientation_ > 0 ? area * (1 + orientation_ * side.spread()) : area;
-  }
-
   /// Equation 4.22 at every position; S(H) divides all alike and is left out.
   void sweep(std::span<const uint32_t> list, int axis, size_t first, Split& best) {
-    Side left, right;
+    Box left, right;
     for (size_t i = 0; i + 1 < list.size(); ++i) {
-      add(left, list[i]);
-      left_cost_[first + i] = cost(left, i + 1);
+      left.add(items_[list[i]]);
+      left_cost_[first + i] = left.surface_area() * float(i + 1);
     }
     for (size_t i = list.size() - 1; i > 0; --i) {
-      add(right, list[i]);
-      const float total = left_cost_[first + i - 1] + cost(right, list.size() - i);
+      right.add(items_[list[i]]);
+      const float total = left_cost_[first + i - 1] + right.surface_area() * float(list.size() - i);
       if (total < best.cost) best = {total, axis, i};
     }
-  }
-
-  void add(Side& side, uint32_t item) const {
-    if (orientation_ > 0)
-      side.add(items_[item].box, items_[item].facing * items_[item].box.surface_area());
-    else
-      side.box.add(items_[item].box);
   }
 
   /// Parts all three lists by the split, keeping their order. Returns how many went left.
@@ -161,8 +131,7 @@ class Builder {
     return split.left;
   }
 
-  std::span<const VolumeItem> items_;
-  float orientation_;
+  std::span<const Box> items_;
   VolumeClusterTree& tree_;
   size_t deepest_ = 0;
   std::array<std::vector<uint32_t>, 3> sorted_;
@@ -174,10 +143,9 @@ class Builder {
 
 }  // namespace
 
-VolumeClusterTree build_volume_clusters(std::span<const VolumeItem> items,
-                                        const VolumeClusterOptions& options) {
+VolumeClusterTree build_volume_clusters(std::span<const Box> items) {
   VolumeClusterTree tree;
-  if (items.size() > 1) Builder(items, options, tree).build();
+  if (items.size() > 1) Builder(items, tree).build();
   return tree;
 }
 

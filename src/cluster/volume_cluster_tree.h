@@ -22,22 +22,13 @@ struct VolumeClusterTree {
   std::vector<VolumeCluster> nodes;
 };
 
-/// What is clustered: a surface's box and the direction in which it mostly sends light.
-struct VolumeItem {
-  Box box;
-  vec3 facing{0};  ///< summed normal / area: length 1 for a plane, 0 for a closed object
-};
-
-struct VolumeClusterOptions {
-  float orientation = 0;  ///< weight of the orientation term (thesis 9.2.3); 0 is equation 4.22 alone
-};
-
-/// Top down: the split along any axis, by item centres, that minimises the surface-area cost (equation 4.22),
-/// until one item is left. O(n log^2 n), deterministic for any number of threads.
-VolumeClusterTree build_volume_clusters(std::span<const VolumeItem> items,
-                                        const VolumeClusterOptions& options = {});
+/// Top down: the split of the surfaces' boxes along any axis, by their centres, that minimises the
+/// surface-area cost (equation 4.22), until one is left. O(n log^2 n), deterministic for any number of
+/// threads. A term that keeps surfaces apart which face different ways (thesis 9.2.3) was tried: at weights
+/// of 0.5 to 3 it changed the rays of a solve by -3% to +2%, and not for the better on the whole.
+VolumeClusterTree build_volume_clusters(std::span<const Box> items);
 
 /// Aborts if boxes, items or depth-first order are broken. For tests.
-void validate(const VolumeClusterTree& tree, std::span<const VolumeItem> items);
+void validate(const VolumeClusterTree& tree, std::span<const Box> items);
 
 }  // namespace goldthread

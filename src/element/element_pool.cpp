@@ -37,14 +37,13 @@ Box box_of(const SurfaceSet& set, const Surface& surface) {
 void ElementPool::make_volumes() {
   const size_t count = set_->surfaces.size();
   if (count == 0) return;
-  std::vector<VolumeItem> items(count);
+  std::vector<Box> items(count);
   std::vector<Element> roots(count);
   parallel_for(
       count,
       [&](size_t i) {
         roots[i] = make_surface_element(set_->surfaces[i]);
-        items[i].box = box_of(*set_, set_->surfaces[i]);
-        items[i].facing = roots[i].summed_normal / std::max(roots[i].area, 1e-30f);
+        items[i] = box_of(*set_, set_->surfaces[i]);
       },
       16);
   const VolumeClusterTree tree = build_volume_clusters(items);

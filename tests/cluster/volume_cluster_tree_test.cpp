@@ -10,30 +10,28 @@
 namespace goldthread {
 namespace {
 
-std::vector<VolumeItem> random_items(uint32_t seed, size_t count) {
+std::vector<Box> random_items(uint32_t seed, size_t count) {
   std::mt19937 random(seed);
   const auto uniform = [&] { return float(random() % 10000) / 10000; };
-  std::vector<VolumeItem> items(count);
-  for (VolumeItem& item : items) {
+  std::vector<Box> items(count);
+  for (Box& item : items) {
     const vec3 low(uniform(), uniform(), uniform());
-    item.box.add(low);
-    item.box.add(low + 0.1f * vec3(uniform(), uniform(), uniform()));
-    item.facing = normalize_or(vec3(uniform(), uniform(), uniform()) - 0.5f, vec3(0)) * uniform();
+    item.add(low);
+    item.add(low + 0.1f * vec3(uniform(), uniform(), uniform()));
   }
   return items;
 }
 
-VolumeClusterTree build(const std::vector<VolumeItem>& items, const VolumeClusterOptions& options = {}) {
-  VolumeClusterTree tree = build_volume_clusters(items, options);
+VolumeClusterTree build(const std::vector<Box>& items) {
+  VolumeClusterTree tree = build_volume_clusters(items);
   validate(tree, items);
   return tree;
 }
 
-VolumeItem item_at(const vec3& p, float size, const vec3& facing = vec3(0)) {
-  VolumeItem item;
-  item.box.add(p - 0.5f * size);
-  item.box.add(p + 0.5f * size);
-  item.facing = facing;
+Box item_at(const vec3& p, float size) {
+  Box item;
+  item.add(p - 0.5f * size);
+  item.add(p + 0.5f * size);
   return item;
 }
 
@@ -46,7 +44,7 @@ TEST(VolumeClusterTree, NoneOneAndTwo) {
 }
 
 TEST(VolumeClusterTree, TwoHeapsArePartedFirst) {
-  std::vector<VolumeItem> items;
+  std::vector<Box> items;
   for (int i = 0; i < 5; ++i) items.push_back(item_at(vec3(0.01f * float(i), 0, 0), 0.1f));
   for (int i = 0; i < 3; ++i) items.push_back(item_at(vec3(0, 10 + 0.01f * float(i), 0), 0.1f));
   const VolumeClusterTree tree = build(items);
@@ -55,7 +53,7 @@ TEST(VolumeClusterTree, TwoHeapsArePartedFirst) {
 }
 
 TEST(VolumeClusterTree, CoincidingItemsAreHalved) {
-  const std::vector<VolumeItem> items(1024, item_at(vec3(1, 2, 3), 1));
+  const std::vector<Box> items(1024, item_at(vec3(1, 2, 3), 1));
   const VolumeClusterTree tree = build(items);
   uint32_t depth = 0;
   for (uint32_t node = 0; !(node & kItemBit); node = tree.nodes[node].child[1]) ++depth;
@@ -63,7 +61,7 @@ TEST(VolumeClusterTree, CoincidingItemsAreHalved) {
 }
 
 TEST(VolumeClusterTree, ABoundedDepthForAGalaxyOfSizes) {
-  std::vector<VolumeItem> items;
+  std::vector<Box> items;
   for (int i = 0; i < 4000; ++i) {
     const float size = std::exp2(float(i) * 0.015f - 30);
     items.push_back(item_at(vec3(size, 0, 0), size));
@@ -76,35 +74,12 @@ TEST(VolumeClusterTree, ABoundedDepthForAGalaxyOfSizes) {
   EXPECT_LE(*std::max_element(depth.begin(), depth.end()), 64u + 4 * 12);
 }
 
-TEST(VolumeClusterTree, OrientationKeepsFacingPlatesApart) {
-  // A row of plates in which ups and downs alternate along x and sit a little apart along y.
-  std::vector<VolumeItem> items;
-  for (int i = 0; i < 8; ++i)
-    items.push_back(item_at(vec3(float(i), i % 2 ? 0.5f : 0.0f, 0), 0.5f, vec3(0, i % 2 ? 1 : -1, 0)));
-  const auto mixed = [&](const VolumeClusterTree& tree) {
-    int up = 0, down = 0;
-    std::vector<VolumeRef> open{tree.nodes[0].child[0]};
-    while (!open.empty()) {
-      const VolumeRef ref = open.back();
-      open.pop_back();
-      if (ref & kItemBit) {
-        ++(ref % 2 ? up : down);
-        continue;
-      }
-      for (const VolumeRef child : tree.nodes[ref].child) open.push_back(child);
-    }
-    return up > 0 && down > 0;
-  };
-  EXPECT_TRUE(mixed(build(items)));
-  EXPECT_FALSE(mixed(build(items, {.orientation = 4})));
-}
-
 TEST(VolumeClusterTree, TheSameForAnyNumberOfThreads) {
-  const std::vector<VolumeItem> items = random_items(3, 20000);
+  const std::vector<Box> items = random_items(3, 20000);
   VolumeClusterTree trees[2];
   for (size_t threads = 1; threads <= 2; ++threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees[threads - 1] = build(items, {.orientation = 0.5f});
+    trees[threads - 1] = build(items);
   }
   EXPECT_EQ(std::memcmp(trees[0].nodes.data(), trees[1].nodes.data(),
                         trees[0].nodes.size() * sizeof(VolumeCluster)),
@@ -114,8 +89,7 @@ TEST(VolumeClusterTree, TheSameForAnyNumberOfThreads) {
 RC_GTEST_PROP(VolumeClusterTree, AnyItemsGiveAValidTree, ()) {
   const auto seed = *rc::gen::arbitrary<uint32_t>();
   const auto count = *rc::gen::inRange<size_t>(0, 300);
-  const auto orientation = *rc::gen::element(0.0f, 1.0f);
-  build(random_items(seed, count), {.orientation = orientation});
+  build(random_items(seed, count));
 }
 
 }  // namespace

@@ -148,7 +148,6 @@ class ElementPool {
   uint32_t patch_of_triangle(uint32_t part, uint32_t triangle);
   void store_polygon(Patch& patch);
   void expand_sky(ElementId id);
-  SurfacePoint sample_cluster(const Element& element, ClusterRef ref, float u, float v) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
   SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
   void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points,

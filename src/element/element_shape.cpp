@@ -1,5 +1,6 @@
 // The geometry and paint of single elements, and points on them.
 #include <algorithm>
+#include <bit>
 
 #include "base/rng.h"
 #include "element/element_pool.h"
@@ -266,23 +267,62 @@ void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal,
   }
 }
 
+namespace {
+
+// Descends a binary tree by chance: one number in [0, 1) makes all the choices, and what it has left serves
+// within the leaf. Twenty choices use up nearly all bits of a float: those that are gone are made up in the
+// end, or a million triangles would be sampled along a few lines each, some of them edges.
+class Descent {
+ public:
+  explicit Descent(float u) : u_(u) {}
+
+  // Whether the first of two children, whose chance is `share`, is taken.
+  bool first(float share) {
+    const bool taken = u_ < share || share >= 1;
+    const float of = taken ? share : 1 - share;
+    u_ = std::clamp((taken ? u_ : u_ - share) / std::max(of, 1e-20f), 0.0f, kBelowOne);
+    step_ /= std::max(of, 1e-20f);
+    return taken;
+  }
+  float rest(float v) const {
+    const uint32_t key = hash(std::bit_cast<uint32_t>(u_), std::bit_cast<uint32_t>(v));
+    return std::min(u_ + std::min(step_, 1.0f) * unit_float(key), kBelowOne);
+  }
+
+ private:
+  static constexpr float kBelowOne = 0.99999994f;
+  float u_, step_ = 0x1p-24f;
+};
+
+}  // namespace
+
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
-  // Down the volume clusters by area, each step rescaling u to the chosen child.
+  // Down the volume clusters by area.
+  Descent descent(u);
   while (elements_[id].kind == ElementKind::kVolume) {
     const ElementId child = elements_[id].first_child;
     const float share = elements_[id].area > 0 ? elements_[child].area / elements_[id].area : 0.5f;
-    if (u < share || share >= 1) {
-      id = child;
-      u = std::min(u / std::max(share, 1e-20f), 0.99999994f);
-    } else {
-      id = child + 1;
-      u = std::min((u - share) / (1 - share), 0.99999994f);
-    }
+    id = descent.first(share) ? child : child + 1;
   }
   const Element& element = elements_[id];
-  if (element.kind == ElementKind::kCluster) return sample_cluster(element, element.shape, u, v);
-  if (element.kind == ElementKind::kTriangle) return sample_triangle(element, element.shape, u, v);
-  return sample_polygon(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)), u, v);
+  if (element.kind == ElementKind::kPatch)
+    return sample_polygon(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)),
+                          descent.rest(v), v);
+  if (element.kind == ElementKind::kTriangle)
+    return sample_triangle(element, element.shape, descent.rest(v), v);
+  const FaceClusterTree& tree = set_->tree(set_->parts[element.part]);
+  const auto area_of = [&](ClusterRef r) {
+    if (!is_triangle(r)) return tree.nodes[r].area;
+    const UVec3& c = tree.mesh.triangles[triangle_of(r)];
+    return length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z]));
+  };
+  ClusterRef ref = element.shape;
+  while (!is_triangle(ref)) {
+    const FaceCluster& node = tree.nodes[ref];
+    const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
+    ref = node.child[descent.first(share) ? 0 : 1];
+  }
+  return sample_triangle(element, triangle_of(ref), descent.rest(v), v);
 }
 
 namespace {
@@ -323,24 +363,6 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
   return id;
 }
 
-SurfacePoint ElementPool::sample_cluster(const Element& element, ClusterRef ref, float u, float v) const {
-  const FaceClusterTree& tree = set_->tree(set_->parts[element.part]);
-  const auto area_of = [&](ClusterRef r) {
-    if (!is_triangle(r)) return tree.nodes[r].area;
-    const UVec3& c = tree.mesh.triangles[triangle_of(r)];
-    return length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z]));
-  };
-  while (!is_triangle(ref)) {
-    const FaceCluster& node = tree.nodes[ref];
-    const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
-    const bool left = u < share || share >= 1;
-    ref = node.child[left ? 0 : 1];
-    u = left ? u / std::max(share, 1e-20f) : (u - share) / (1 - share);
-    u = std::min(u, 0.99999994f);
-  }
-  return sample_triangle(element, triangle_of(ref), u, v);
-}
-
 SurfacePoint ElementPool::sample_triangle(const Element& element, uint32_t triangle, float u, float v) const {
   const Polygon polygon = triangle_polygon(element, triangle);
   const vec3 n = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
@@ -362,8 +384,12 @@ SurfacePoint ElementPool::sample_polygon(const Polygon& polygon, const vec3& nor
   size_t i = 1;
   while (i + 2 < polygon.count && target >= areas[i]) target -= areas[i++];
   const float s = std::sqrt(std::clamp(areas[i] > 0 ? target / areas[i] : 0.5f, 0.0f, 1.0f));
-  const vec3 position = (1 - s) * a + s * ((1 - v) * polygon.corners[i] + v * polygon.corners[i + 1]);
-  return {position, normal};
+  const vec3 &b = polygon.corners[i], &c = polygon.corners[i + 1];
+  // A hair's breadth from the edges: on one, a point would lie in the wall that stands there as much as
+  // before it.
+  constexpr float kDrawnIn = 1e-3f;
+  const vec3 position = (1 - s) * a + s * ((1 - v) * b + v * c), centroid = (a + b + c) / 3.0f;
+  return {position + kDrawnIn * (centroid - position), normal};
 }
 
 Polygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {
@@ -425,16 +451,16 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
       return node.area / (dot(d, d) + 0.25f * node.radius * node.radius);
     };
     ClusterRef ref = element.shape;
+    Descent descent(u);
     while (!is_triangle(ref)) {
       const FaceCluster& node = tree.nodes[ref];
       const float a = pull(node.child[0]), b = pull(node.child[1]);
       const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
-      const bool left = u < share;
-      ref = node.child[left ? 0 : 1];
-      const float of = left ? share : 1 - share;
-      u = std::min((left ? u : u - share) / std::max(of, 1e-20f), 0.99999994f);
-      chance *= of;
+      const bool first = descent.first(share);
+      ref = node.child[first ? 0 : 1];
+      chance *= first ? share : 1 - share;
     }
+    u = descent.rest(v);
     triangle = triangle_of(ref);
     polygon = triangle_polygon(element, triangle);
   }

@@ -156,7 +156,7 @@ struct RayCaster::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::atomic<int64_t> bytes{0};
-  LoopOrder building;            // Embree counts its memory on all threads
+  LoopOrder building;  // Embree counts its memory on all threads
   float epsilon = 0;
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <set>
+
+#include "base/rng.h"
 #include "element/small_scenes.h"
 
 namespace goldthread {
@@ -198,6 +201,43 @@ TEST(ElementPool, SamplesAreEvenByArea) {
   const std::array<double, 7> area{8, 8, 4, 4, 2, 2, 6};
   // u is spread in 400 steps, each chooses one place; 2 of them may err at every border between faces.
   for (size_t k = 0; k < 7; ++k) EXPECT_NEAR(count[k] / kSamples, area[k] / total, 2.0 / kRoot) << k;
+}
+
+TEST(ElementPool, SamplesKeepOffTheEdges) {
+  // On an edge a point is in the next wall as much as before it. These would come out there by rounding.
+  Scene scene;
+  test::add(scene, shapes::cube(64), test::add(scene, test::diffuse(0.5f)));
+  const Elements elements(std::move(scene));
+  for (const float u : {0.0f, 1e-7f, 0.3f, 0.99999994f})
+    for (const float v : {0.0f, 1e-7f, 0.6f, 0.99999994f}) {
+      const SurfacePoint p = elements.pool->sample_at(elements.pool->root(), u, v);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(p.normal[axis]) > 0.5f) continue;
+        EXPECT_GT(p.position[axis], 3e-6f) << u << " " << v;
+        EXPECT_LT(p.position[axis], 1 - 3e-6f) << u << " " << v;
+      }
+    }
+}
+
+TEST(ElementPool, SamplesFillTheTrianglesOfALargeCluster) {
+  // Some 330,000 triangles take 18 of the 24 bits of u: the other six would be 64 places in each.
+  Scene scene;
+  test::add(scene, shapes::flat_grid(405), test::add(scene, test::diffuse(0.5f)));
+  const Elements elements(std::move(scene));
+  const ElementPool& pool = *elements.pool;
+  const Part& part = elements.set->parts[0];
+  const TriangleMesh& mesh = elements.set->tree(part).mesh;
+  // Distance of samples from corner 0, as the square root map makes it: squared it is even over 0..1.
+  std::set<int> places;
+  for (uint32_t i = 0; i < 4096; ++i) {
+    const UnitSquarePoint uv = r2_point(i, 7);
+    const SurfacePoint p = pool.sample_at(pool.root(), uv.u, uv.v);
+    const UVec3& t = mesh.triangles[p.triangle];
+    const vec3 &a = part.positions[t.x], &b = part.positions[t.y], &c = part.positions[t.z];
+    const float height = length(area_vector(p.position, b, c)) / length(area_vector(a, b, c));
+    places.insert(int((1 - height) * (1 - height) * 2000));
+  }
+  EXPECT_GT(places.size(), 1500u);
 }
 
 TEST(ElementPool, StoredSamplesStandForEqualAreas) {

@@ -67,6 +67,25 @@ TEST(PointTransfer, FarClustersAreExactInTheLimit) {
   }
 }
 
+TEST(PointTransfer, OfALampThatTheHorizonCutsThePartAboveIt) {
+  // A lamp of a square metre seen by what is turned all but away from it: a wall below, its edge to the lamp.
+  // Its form factor is some 1e-4, and may well be all of the wall's direct light.
+  for (const uint32_t n : {1u, 3u}) {
+    Scene scene;
+    test::add(scene, test::parallelogram({-0.5f, -0.5f, 0}, {0, 1, 0}, {1, 0, 0}, n),
+              test::add(scene, test::diffuse(0.5f, 1)));
+    const Elements elements(std::move(scene));
+    const ElementId lamp = elements.pool->surface_roots()[0];
+    for (const float tilt : {-0.08f, -0.03f, 0.0f, 0.05f, 0.1f}) {
+      const vec3 x(0.1f, 0.05f, -4), normal = normalize(vec3(1, 0.2f, tilt));
+      const float exact = dot(exact_transfer(*elements.pool, lamp, x, normal), normal);
+      ASSERT_GT(exact, 1e-5f);
+      EXPECT_NEAR(dot(point_transfer(*elements.pool, lamp, x, normal), normal) / exact, 1, 0.02f)
+          << n << " " << tilt << " " << exact;
+    }
+  }
+}
+
 TEST(PointTransfer, PatchesAddUpToTheirTriangle) {
   Scene scene;
   test::add(scene, test::polygon({{0, 0, 0}, {2, 0, 0}, {0.3f, 1, 0}}),

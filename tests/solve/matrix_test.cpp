@@ -144,8 +144,7 @@ TEST_P(SharedCase, MeansOfSurfaces) {
     radiosity[e.part] += double(e.area) * dvec3(solved.state().radiosity[id]);
     area[e.part] += double(e.area);
   }
-  const std::string name = GetParam();
-  const double of_mean = name == "gi-p-cornell-rgb" ? 0.045 : name == "gi-p-globillum-room" ? 0.008 : 0.002;
+  constexpr double kOfMean = 0.002;
   double total = 0, landing = 0;
   size_t checked = 0;
   for (size_t i = 0; i < names.size(); ++i) {
@@ -163,9 +162,8 @@ TEST_P(SharedCase, MeansOfSurfaces) {
     for (int k = 0; k < 3; ++k) {
       const double truth = expect["value"][size_t(k)],
                    got = (uniform ? radiosity : irradiance)[i][k] / area[i];
-      // Within 1% of the value, and a fifth of that of the room's mean where hardly any light gets. Not yet
-      // there: the sides of the Cornell box's short block, which floor elements half under it light.
-      EXPECT_NEAR(got, truth, 0.01 * truth + of_mean * landing / total)
+      // Within 1% of the value, and a fifth of that of the room's mean where hardly any light gets.
+      EXPECT_NEAR(got, truth, 0.01 * truth + kOfMean * landing / total)
           << GetParam() << " " << names[i] << " channel " << k;
     }
   }

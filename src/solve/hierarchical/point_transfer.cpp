@@ -7,6 +7,9 @@ namespace {
 
 // Largest error of a form factor that one piece of a source may bring in.
 constexpr float kTolerance = 6e-4f;
+// The same for a piece that the receiver's horizon cuts: what is above it brings more than its centre says,
+// and there is always something to be gained by it, so that such errors add up. A lamp may well be there.
+constexpr float kHorizonTolerance = 2e-5f;
 
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre
 // `distance_squared` away, may be treated as a point: the error of that falls as the square of size over
@@ -79,7 +82,8 @@ vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& 
   const float radius_squared =
       std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
   const float factor = -dot(d, normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
-  if (small_enough(factor, std::sqrt(radius_squared), squared)) {
+  const float height = dot(d, n);
+  if (height * height > radius_squared && small_enough(factor, std::sqrt(radius_squared), squared)) {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     return flat_dipole(d, squared, normal, n, (dot(ab, ab) + dot(bc, bc) + dot(ca, ca)) / 18);
   }
@@ -124,7 +128,7 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     const bool turned_here = facing > slack;  // every triangle faces x
     const bool small = turned_here ? small_enough(factor, radius, squared)
                                    : factor < kTolerance && squared > 4 * radius * radius;
-    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > kTolerance;
+    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > kHorizonTolerance;
     if ((small && !near_horizon) || depth + 2 > kStack) {
       if (node.cone_cosine > 0.995f) {
         sum += flat_dipole(d, squared, summed, n, area / kPi);

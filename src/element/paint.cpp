@@ -95,11 +95,12 @@ vec2 to_triangle(UnitSquarePoint p) {
   return {p.u, p.v};
 }
 
-Paint average_paint(const Scene& scene, const Primitive& primitive, uint32_t source) {
+// Mean of paint(weights) over a triangle, by `count` points; `seed` shifts them.
+template <typename PaintAt>
+Paint average(uint32_t count, uint32_t seed, const PaintAt& paint) {
   Paint sum{vec3(0), vec3(0), 0};
-  const uint32_t count = paint_samples(scene, primitive, source);
   for (uint32_t i = 0; i < count; ++i) {
-    const Paint one = paint_of_source(scene, primitive, source, to_triangle(r2_point(i, source)));
+    const Paint one = paint(to_triangle(r2_point(i, seed)));
     sum.reflectance += one.reflectance;
     sum.exitance += one.exitance;
     sum.coverage += one.coverage;
@@ -108,18 +109,14 @@ Paint average_paint(const Scene& scene, const Primitive& primitive, uint32_t sou
   return {sum.reflectance * share, sum.exitance * share, sum.coverage * share};
 }
 
-// The same of a triangle that shares its place with others.
-Paint average_uncovered(const SurfaceSet& set, const Part& part, uint32_t triangle, uint32_t source) {
-  constexpr uint32_t kLeast = 256;
-  Paint sum{vec3(0), vec3(0), 0};
-  for (uint32_t i = 0; i < kLeast; ++i) {
-    const Paint one = paint_at(set, part, triangle, to_triangle(r2_point(i, source)));
-    sum.reflectance += one.reflectance;
-    sum.exitance += one.exitance;
-    sum.coverage += one.coverage;
-  }
-  const float share = 1.0f / static_cast<float>(kLeast);
-  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share};
+Paint average_paint(const SurfaceSet& set, const Part& part, uint32_t triangle) {
+  constexpr uint32_t kWhereCovered = 256;
+  const Primitive& primitive = primitive_of(*set.scene, part);
+  const uint32_t source = set.tree(part).mesh.source_triangles[triangle];
+  if (!part.covering.empty() && part.covering_first[triangle + 1] > part.covering_first[triangle])
+    return average(kWhereCovered, source, [&](vec2 w) { return paint_at(set, part, triangle, w); });
+  return average(paint_samples(*set.scene, primitive, source), source,
+                 [&](vec2 w) { return paint_of_source(*set.scene, primitive, source, w); });
 }
 
 }  // namespace
@@ -139,14 +136,7 @@ void paint_part(const SurfaceSet& set, Part& part) {
   const size_t count = mesh.triangles.size();
   std::vector<Paint> paints(count);
   parallel_for(
-      count,
-      [&](size_t i) {
-        const auto t = static_cast<uint32_t>(i);
-        const bool shared = !part.covering.empty() && part.covering_first[t + 1] > part.covering_first[t];
-        paints[t] = shared ? average_uncovered(set, part, t, mesh.source_triangles[t])
-                           : average_paint(scene, primitive, mesh.source_triangles[t]);
-      },
-      64);
+      count, [&](size_t t) { paints[t] = average_paint(set, part, static_cast<uint32_t>(t)); }, 64);
   part.triangle_reflectance.resize(count);
   part.triangle_exitance.resize(count);
   part.triangle_coverage.resize(count);

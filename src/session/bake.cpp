@@ -206,6 +206,7 @@ Status Bake::preprocess() {
   }
   const auto volumes = Clock::now();
   Effort effort = effort_for(options_.quality);
+  effort.solve.seed = static_cast<uint32_t>(options_.seed);
   solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
   report_.seconds.volume_clusters = since(volumes);
   report_.seconds.preprocess = since(begin);

@@ -127,6 +127,24 @@ TEST(OpenSky, AFaintSunTakesNothingFromIt) {
   EXPECT_LE(light.most, 1.01f * 1000 * kPi);
 }
 
+TEST(Seed, IsAnotherChoiceOfTheSameAnswer) {
+  const TempFolder folder;
+  const std::string input = made(folder, "cornell-box");
+  std::vector<std::string> bytes;
+  std::vector<double> absorbed;
+  for (const uint64_t seed : {0, 1, 1}) {
+    BakeOptions options = draft(input, {folder.path("lit.gold")});
+    options.seed = seed;
+    const nlohmann::json report = nlohmann::json::parse(baked(options).json);
+    bytes.push_back(bytes_of_file(options.outputs[0]));
+    absorbed.push_back(report["power_lm"]["absorbed"].get<double>());
+  }
+  EXPECT_TRUE(bytes[0] != bytes[1]);
+  EXPECT_TRUE(bytes[1] == bytes[2]);
+  EXPECT_NE(absorbed[0], absorbed[1]);
+  EXPECT_NEAR(absorbed[1] / absorbed[0], 1, 0.02);
+}
+
 class Repeated : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Repeated, TheSameBytesForAnyThreadsAndAgain) {

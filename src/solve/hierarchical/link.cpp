@@ -352,7 +352,7 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     // Anywhere at all: quadrature points lie well inside, and never see past what hides all but an edge. But
     // the same for all that an element is linked to: where the one fills more of the view the others fill
     // less, and the errors of their sum cancel.
-    const UnitSquarePoint uv = r2_point(i, hash(here, 0));
+    const UnitSquarePoint uv = r2_point(i, hash(here, visibility.seed));
     const SurfacePoint x = pool.sample_at(here, uv.u, uv.v);
     const uint64_t before = ray_count.rays;
     SeenPoints seen;

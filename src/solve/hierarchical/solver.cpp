@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/rng.h"
 #include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
@@ -11,6 +12,8 @@ HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCast
     : options_(options), pool_(surfaces), bound_(options.first_error) {
   visibility_.caster = &caster;
   visibility_.epsilon = caster.epsilon();
+  // Spread over all bits: seeds are small numbers, and so are some of what they are mixed with.
+  visibility_.seed = options.seed == 0 ? 0 : hash(options.seed, 1);
   state_.grow_to(pool_);
   make_first_links();
 }

@@ -21,6 +21,7 @@ struct SolveOptions {
   double settled =
       1e-4;  ///< iterate until a sweep changes reflected power by less than this share of landing light
   uint64_t most_links = 0;  ///< 0: no limit
+  uint32_t seed = 0;        ///< another choice of sample points and rays
 };
 
 /// What a solve has cost and reached.

@@ -90,8 +90,8 @@ constexpr uint32_t kPacket = 16, kLooked = 8;
 }  // namespace
 
 SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
-                           uint32_t rays, uint32_t seed, RayCount& count, SeenPoints* places) const {
-  const SourceSampler sampler{pool, source, x, n, epsilon, hash(seed, source)};
+                           uint32_t rays, uint32_t turn, RayCount& count, SeenPoints* places) const {
+  const SourceSampler sampler{pool, source, x, n, epsilon, hash(turn ^ seed, source)};
   const bool hides = sampler.hides_itself();
   const bool keep = places != nullptr && is_surface(sampler.e.kind);
   SeenShare sum;
@@ -141,7 +141,7 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
 }
 
 float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
-                           uint32_t rays, uint32_t seed, RayCount& count, float unknown) const {
+                           uint32_t rays, uint32_t turn, RayCount& count, float unknown) const {
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
@@ -152,7 +152,7 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
     }
     return timed_ray(*caster, ray, count);
   }
-  const SeenShare share = look(pool, source, x, n, rays, seed, count);
+  const SeenShare share = look(pool, source, x, n, rays, turn, count);
   if (share.seen + share.hidden > 0) return share.seen / (share.seen + share.hidden);
   // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
   if (e.kind == ElementKind::kSky) return 0;

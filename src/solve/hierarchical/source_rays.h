@@ -36,18 +36,19 @@ struct SeenShare {
 struct Visibility {
   const RayCaster* caster = nullptr;  ///< borrowed
   float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
+  uint32_t seed = 0;                  ///< chooses among all patterns of points and rays
 
   /// Casts `rays` (1..64) rays from `x` with unit normal `n` to points on the real triangles of `source`, or
-  /// into the sky. `seed` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
+  /// into the sky. `turn` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
   /// places where they arrived to `places` (surfaces only), if given. Not for point lights and suns.
   SeenShare look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                 uint32_t seed, RayCount& count, SeenPoints* places = nullptr) const;
+                 uint32_t turn, RayCount& count, SeenPoints* places = nullptr) const;
 
   /// Share of `source` seen from `x`, 0..1. A ratio of two sums over few rays: less noisy than `look`, and a
   /// little biased. `unknown` is the answer where the rays can tell nothing: `x` lies amid the source, and no
   /// place that was drawn faces it.
   float fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                 uint32_t seed, RayCount& count, float unknown = 0) const;
+                 uint32_t turn, RayCount& count, float unknown = 0) const;
 };
 
 }  // namespace goldthread

@@ -286,7 +286,8 @@ class Descent {
   }
   float rest(float v) const {
     const uint32_t key = hash(std::bit_cast<uint32_t>(u_), std::bit_cast<uint32_t>(v));
-    return std::min(u_ + std::min(step_, 1.0f) * unit_float(key), kBelowOne);
+    const float whole = u_ + std::min(step_, 1.0f) * unit_float(key);
+    return std::min(whole < 1 ? whole : whole - 1, kBelowOne);  // round, or the end would get too much
   }
 
  private:

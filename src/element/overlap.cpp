@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "element/paint.h"
+#include "math/colour.h"
 
 namespace goldthread {
 namespace {
@@ -14,6 +15,9 @@ struct PlacedTriangle {
 
   const vec3& corner(const SurfaceSet& set, int k) const {
     return part.positions[set.tree(part).mesh.triangles[triangle][k]];
+  }
+  float exitance() const {
+    return luminance(part.triangle_exitance.empty() ? part.exitance : part.triangle_exitance[triangle]);
   }
   vec3 area(const SurfaceSet& set) const {
     return part.winding * area_vector(corner(set, 0), corner(set, 1), corner(set, 2));
@@ -33,8 +37,9 @@ bool owns(const SurfaceSet& set, uint32_t owner, uint32_t other) {
   if (first.unlit || second.unlit || first.alpha_mode != AlphaMode::kOpaque ||
       second.alpha_mode != AlphaMode::kOpaque)
     return false;
-  if (first.emits() != second.emits()) {
-    if (!first.emits()) return false;
+  const float own_light = a.exitance(), other_light = b.exitance();
+  if (own_light != other_light) {
+    if (own_light < other_light) return false;
     // One side cannot take the place of two.
     return first.double_sided || (!second.double_sided && dot(a.area(set), b.area(set)) > 0);
   }

@@ -130,10 +130,10 @@ TEST(OpenSky, AFaintSunTakesNothingFromIt) {
 TEST(Seed, IsAnotherChoiceOfTheSameAnswer) {
   const TempFolder folder;
   const std::string input = made(folder, "cornell-box");
-  std::vector<std::string> bytes;
+  std::vector<std::string> bytes;  // of the light alone: the report has rays of its own
   std::vector<double> absorbed;
   for (const uint64_t seed : {0, 1, 1}) {
-    BakeOptions options = draft(input, {folder.path("lit.gold")});
+    BakeOptions options = draft(input, {folder.path("lit.glb")});
     options.seed = seed;
     const nlohmann::json report = nlohmann::json::parse(baked(options).json);
     bytes.push_back(bytes_of_file(options.outputs[0]));
@@ -141,7 +141,6 @@ TEST(Seed, IsAnotherChoiceOfTheSameAnswer) {
   }
   EXPECT_TRUE(bytes[0] != bytes[1]);
   EXPECT_TRUE(bytes[1] == bytes[2]);
-  EXPECT_NE(absorbed[0], absorbed[1]);
   EXPECT_NEAR(absorbed[1] / absorbed[0], 1, 0.02);
 }
 

@@ -395,7 +395,9 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   if (r.flat && !from_source) {
     // The slope by the first samples, which knows nothing of these, tells what their mean owes to where they
     // happen to lie.
-    mean = std::max(0.0f, mean - dot(link.transfer, fit.middle()));
+    // It takes no more than there is, and adds no more: else what is all but hidden would gain on the
+    // average.
+    mean -= std::clamp(dot(link.transfer, fit.middle()), -mean, mean);
     // What the first samples say of the slope is as good as what these do, ray for ray.
     const float first = static_cast<float>(link.rays) / static_cast<float>(std::max(1u, link.rays + rays));
     link.transfer = first * link.transfer + (1 - first) * fit.gradient();

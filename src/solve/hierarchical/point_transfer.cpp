@@ -8,8 +8,8 @@ namespace {
 // Largest error of a form factor that one piece of a source may bring in.
 constexpr float kTolerance = 6e-4f;
 // The same for a piece that the receiver's horizon cuts: what is above it brings more than its centre says,
-// and there is always something to be gained by it, so that such errors add up. A lamp may well be there.
-constexpr float kHorizonTolerance = 2e-5f;
+// and such errors add up. Of lamps, which outshine all else a thousandfold, next to nothing may be lost.
+constexpr float kHorizonTolerance = 2e-4f, kLampTolerance = 2e-5f;
 
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre
 // `distance_squared` away, may be treated as a point: the error of that falls as the square of size over
@@ -92,7 +92,8 @@ vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& 
 }
 
 // Descends a face cluster tree from `root`, adding up pieces that are small for their distance.
-vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n) {
+vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n,
+                   float horizon_tolerance) {
   vec3 sum(0);
   constexpr size_t kStack = 256;
   std::array<ClusterRef, kStack> stack;
@@ -128,7 +129,7 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     const bool turned_here = facing > slack;  // every triangle faces x
     const bool small = turned_here ? small_enough(factor, radius, squared)
                                    : factor < kTolerance && squared > 4 * radius * radius;
-    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > kHorizonTolerance;
+    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > horizon_tolerance;
     if ((small && !near_horizon) || depth + 2 > kStack) {
       if (node.cone_cosine > 0.995f) {
         sum += flat_dipole(d, squared, summed, n, area / kPi);
@@ -199,7 +200,7 @@ vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, 
                               e.back ? -1.0f * part.area_map : part.area_map,
                               e.back ? -part.winding : part.winding};
       if (e.kind == ElementKind::kTriangle) return triangle_transfer(placed, e.shape, x, n);
-      return tree_transfer(placed, e.shape, x, n);
+      return tree_transfer(placed, e.shape, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance);
     }
     case ElementKind::kPatch: {
       const vec3 d = e.centre - x;

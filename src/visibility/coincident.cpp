@@ -44,6 +44,12 @@ struct Soup {
   }
 };
 
+template <typename T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 // All that `look(i, found)` finds for i in [0, count), sorted, each once.
 template <typename Look>
 std::vector<Pair> collect(size_t count, const Look& look) {
@@ -57,8 +63,7 @@ std::vector<Pair> collect(size_t count, const Look& look) {
     const std::lock_guard guard(lock);
     pairs.insert(pairs.end(), found.begin(), found.end());
   });
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   return pairs;
 }
 
@@ -74,14 +79,12 @@ std::vector<std::pair<uint32_t, uint32_t>> find_coincident(std::span<const vec3>
   // Those that have something in common with one may have so with more.
   std::vector<uint32_t> concerned;
   for (const auto& [a, b] : pairs) concerned.insert(concerned.end(), {a, b});
-  std::sort(concerned.begin(), concerned.end());
-  concerned.erase(std::unique(concerned.begin(), concerned.end()), concerned.end());
+  sort_unique(concerned);
   std::vector<Pair> more = collect(concerned.size(), [&](size_t i, std::vector<Pair>& found) {
     for (const vec2& w : kPlaces) soup.look_at(concerned[i], w, found);
   });
   pairs.insert(pairs.end(), more.begin(), more.end());
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   return pairs;
 }
 

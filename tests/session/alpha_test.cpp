@@ -42,6 +42,14 @@ Scene under_screen(Material screen, bool sun) {
   return scene;
 }
 
+/// A black material of which `alpha` is there.
+Material blend(float alpha) {
+  Material screen = test::diffuse(0);
+  screen.alpha_mode = AlphaMode::kBlend;
+  screen.alpha = alpha;
+  return screen;
+}
+
 double floor_mean(Scene scene) {
   Solved solved(std::move(scene), {}, transparency);
   solved.solve();
@@ -61,17 +69,12 @@ TEST(Alpha, OpaqueScreenLetsNothingThrough) {
 
 TEST(Alpha, BlendLetsItsShareThrough) {
   for (const float alpha : {0.25f, 0.6f, 0.9f}) {
-    Material screen = test::diffuse(0);
-    screen.alpha_mode = AlphaMode::kBlend;
-    screen.alpha = alpha;
-    EXPECT_NEAR(floor_mean(under_screen(screen, true)) / 1000, 1 - double(alpha), 1e-4) << alpha;
+    EXPECT_NEAR(floor_mean(under_screen(blend(alpha), true)) / 1000, 1 - double(alpha), 1e-4) << alpha;
   }
 }
 
 TEST(Alpha, TwoBlendsLetTheProductThrough) {
-  Material screen = test::diffuse(0);
-  screen.alpha_mode = AlphaMode::kBlend;
-  screen.alpha = 0.4f;
+  const Material screen = blend(0.4f);
   Scene scene = under_screen(screen, true);
   scene.instances.push_back(scene.instances[1]);
   scene.instances[2].transform = test::move({0, 0, 0.7f});
@@ -79,9 +82,7 @@ TEST(Alpha, TwoBlendsLetTheProductThrough) {
 }
 
 TEST(Alpha, NoSpotOfTheFloorIsNoisy) {
-  Material screen = test::diffuse(0);
-  screen.alpha_mode = AlphaMode::kBlend;
-  screen.alpha = 0.6f;
+  const Material screen = blend(0.6f);
   Solved solved(under_screen(screen, true), {}, transparency);
   solved.solve();
   const test::Summary floor = summarise(solved, [&](ElementId id) {
@@ -109,9 +110,7 @@ TEST(Alpha, MaskOfAWholeMaterial) {
 
 TEST(Alpha, SkyThroughABlend) {
   // The screen takes alpha of its form factor from every point of the floor.
-  Material screen = test::diffuse(0);
-  screen.alpha_mode = AlphaMode::kBlend;
-  screen.alpha = 0.5f;
+  const Material screen = blend(0.5f);
   const std::vector<vec3> seen{{-2, -2, 1}, {-2, 2, 1}, {2, 2, 1}, {2, -2, 1}};
   double mean = 0;
   for (int i = 0; i < 400; ++i) {

@@ -29,33 +29,33 @@ PlacedTriangle placed(const SurfaceSet& set, uint32_t world_triangle) {
   return {part, world_triangle - part.first_triangle};
 }
 
-// Whether the first of two triangles takes the place of the second.
-bool owns(const SurfaceSet& set, uint32_t owner, uint32_t other) {
-  const PlacedTriangle a = placed(set, owner), b = placed(set, other);
-  const Material &first = set.scene->materials[a.part.material],
-                 &second = set.scene->materials[b.part.material];
-  if (first.unlit || second.unlit || first.alpha_mode != AlphaMode::kOpaque ||
-      second.alpha_mode != AlphaMode::kOpaque)
-    return false;
-  const float own_light = a.exitance(), other_light = b.exitance();
-  if (own_light != other_light) {
-    if (own_light < other_light) return false;
-    // One side cannot take the place of two.
-    return first.double_sided || (!second.double_sided && dot(a.area(set), b.area(set)) > 0);
-  }
-  if (first.double_sided != second.double_sided) return first.double_sided;
-  return owner < other && (first.double_sided || dot(a.area(set), b.area(set)) > 0);
+const Material& material_of(const SurfaceSet& set, const Part& part) {
+  return set.scene->materials[part.material];
 }
 
 }  // namespace
 
-void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> pairs, float tolerance) {
-  std::vector<std::pair<uint32_t, uint32_t>> covered;  // world triangles: which, by which
-  for (const auto& [a, b] : pairs) {
-    if (owns(set, a, b)) covered.emplace_back(b, a);
-    if (owns(set, b, a)) covered.emplace_back(a, b);
+bool contends_for_place(const SurfaceSet& set, uint32_t triangle) {
+  const Material& material = material_of(set, part_of_triangle(set, triangle));
+  return !material.unlit && material.alpha_mode == AlphaMode::kOpaque;
+}
+
+bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other) {
+  const PlacedTriangle a = placed(set, owner), b = placed(set, other);
+  const bool both_sides = material_of(set, a.part).double_sided,
+             other_both_sides = material_of(set, b.part).double_sided;
+  const float own_light = a.exitance(), other_light = b.exitance();
+  if (own_light < other_light) return false;
+  if (own_light == other_light) {
+    if (both_sides != other_both_sides) return both_sides;
+    if (owner >= other) return false;
   }
-  std::sort(covered.begin(), covered.end());
+  // One side cannot take the place of two.
+  return both_sides || (!other_both_sides && dot(a.area(set), b.area(set)) > 0);
+}
+
+void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> covered,
+                     float tolerance) {
   set.same_place = tolerance;
   std::vector<uint32_t> parts;
   for (size_t i = 0; i < covered.size();) {

@@ -8,13 +8,21 @@
 
 namespace goldthread {
 
-/// Gives every place one owner. `pairs` are triangles of the world that overlap in one plane, to within
-/// `tolerance` metres; of two that face the same way (two-sided ones face both), what emits more owns the
-/// common area, else what is two-sided, else the lower number. A lamp of one side in a surface of two takes
-/// nothing from it, since it is not there on the other: both keep their light. There the other's coverage,
+/// Whether this triangle of the world competes for its place: not where its material has alpha, since such
+/// share the light as they are, and not where it is unlit.
+bool contends_for_place(const SurfaceSet& set, uint32_t triangle);
+
+/// Whether the first of two contenders that overlap gets their common area: of two that face the same way
+/// (two-sided ones face both), what emits more, else what is two-sided, else the lower number. A lamp of one
+/// side in a surface of two takes nothing from it, since it is not there on the other: both keep their light.
+bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other);
+
+/// Gives every place one owner. `covered` are pairs (which, by which) of the world's triangles, in order,
+/// that overlap in one plane to within `tolerance` metres. Where a triangle is covered, its coverage,
 /// reflectance and exitance are nought: it still receives, so as to look lit, but no light lands on it or
-/// leaves it twice. Materials with alpha, which share the light as they are, and unlit ones take no part.
-void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> pairs, float tolerance);
+/// leaves it twice.
+void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> covered,
+                     float tolerance);
 
 /// Whether another triangle owns the place `p` of the part's triangle.
 bool is_covered(const SurfaceSet& set, const Part& part, uint32_t triangle, const vec3& p);

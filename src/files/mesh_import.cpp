@@ -9,6 +9,7 @@
 #include <assimp/MemoryIOWrapper.h>
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -37,24 +38,27 @@ std::optional<MeshFormat> marked_format(const Bytes& bytes) {
   return std::nullopt;
 }
 
-/// How many numbers follow "v " on this line.
+/// How many numbers follow "v " on this line, before anything else.
 size_t count_numbers(std::string_view line) {
-  size_t count = 0;
-  bool inside = false;
-  for (const char c : line.substr(2)) {
-    const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;
-    if (!blank && !inside) ++count;
-    inside = !blank;
+  line.remove_prefix(2);
+  for (size_t count = 0;; ++count) {
+    const size_t start = line.find_first_not_of(" \t");
+    if (start == line.npos) return count;
+    line.remove_prefix(start + (line[start] == '+' ? 1 : 0));
+    float value = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error == std::errc::invalid_argument) return count;
+    line.remove_prefix(size_t(end - line.data()));
   }
-  return count;
 }
 
 /// OBJ files may give colours to some vertices only (Blender: to those of painted objects). assimp numbers
-/// the colours by themselves, so they would land on the first vertices and leave the others black. Such a
-/// file is returned with white on all other vertices; nothing is returned for all others.
-std::optional<Bytes> with_all_colours(const Bytes& bytes) {
+/// the colours by themselves, so they would land on the first vertices and leave the others black. And it
+/// takes the words of a comment behind a vertex for numbers. Such a file is returned without those comments
+/// and with white on all other vertices; nothing is returned for all others.
+std::optional<Bytes> with_plain_vertices(const Bytes& bytes) {
   const std::string_view text = text_of(bytes);
-  const auto each_vertex = [&](const auto& take) {
+  const auto each_line = [&](const auto& take) {
     for (size_t at = 0; at < text.size();) {
       const size_t end = std::min(text.find('\n', at), text.size());
       const std::string_view line = text.substr(at, end - at);
@@ -62,20 +66,40 @@ std::optional<Bytes> with_all_colours(const Bytes& bytes) {
       at = end + 1;
     }
   };
-  size_t coloured = 0, plain = 0;
-  each_vertex([&](std::string_view line, bool is_vertex) {
-    if (is_vertex) ++(count_numbers(line) >= 6 ? coloured : plain);
+  size_t coloured = 0, plain = 0, comments = 0;
+  each_line([&](std::string_view line, bool is_vertex) {
+    if (!is_vertex) return;
+    ++(count_numbers(line) >= 6 ? coloured : plain);
+    if (line.find('#') != line.npos) ++comments;
   });
-  if (coloured == 0 || plain == 0) return std::nullopt;
+  if ((coloured == 0 || plain == 0) && comments == 0) return std::nullopt;
   Bytes out;
   out.reserve(bytes.size() + 6 * plain);
-  each_vertex([&](std::string_view line, bool is_vertex) {
+  each_line([&](std::string_view line, bool is_vertex) {
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (is_vertex) line = line.substr(0, line.find('#'));
     out.insert(out.end(), line.begin(), line.end());
     constexpr std::string_view kWhite = " 1 1 1";
-    if (is_vertex && count_numbers(line) == 3) out.insert(out.end(), kWhite.begin(), kWhite.end());
+    if (is_vertex && coloured > 0 && count_numbers(line) == 3)
+      out.insert(out.end(), kWhite.begin(), kWhite.end());
     out.push_back('\n');
   });
+  return out;
+}
+
+/// PLY files from old Macs end lines with a bare carriage return, which assimp does not know. Such a file is
+/// returned with line feeds instead, in the header and, if the body is text, there as well; nothing is
+/// returned for all others.
+std::optional<Bytes> with_line_feeds(const Bytes& bytes) {
+  const std::string_view text = text_of(bytes);
+  if (text.substr(0, 4) != "ply\r" || text.substr(4, 1) == "\n") return std::nullopt;
+  constexpr std::string_view kLastLine = "\rend_header\r";
+  const size_t last = text.find(kLastLine);
+  if (last == text.npos) return std::nullopt;
+  const bool all = text.substr(0, last).find("\rformat ascii") != text.npos;
+  Bytes out = bytes;
+  std::replace(out.begin(), all ? out.end() : out.begin() + std::ptrdiff_t(last + kLastLine.size()),
+               uint8_t('\r'), uint8_t('\n'));
   return out;
 }
 
@@ -131,11 +155,14 @@ Result<const aiScene*> import_mesh_file(const std::string& file, Assimp::Importe
   if (const auto marked = marked_format(*bytes); marked && *marked != format)
     return bad_input(file, "", fmt::format("its content is that of a {} file", kExtensions[size_t(*marked)]),
                      fmt::format("give it a name that ends in {}", kExtensions[size_t(*marked)]));
-  if (format == MeshFormat::kPly)
-    if (Status status = check_ply_length(text_of(*bytes), file); !status) return status.error();
-  if (format == MeshFormat::kObj)
-    if (std::optional<Bytes> patched = with_all_colours(*bytes))
-      importer.SetIOHandler(new PatchedFiles(file, *std::move(patched)));  // the importer owns it
+  std::optional<Bytes> patched;
+  if (format == MeshFormat::kPly) {
+    patched = with_line_feeds(*bytes);
+    if (Status status = check_ply_length(text_of(patched ? *patched : *bytes), file); !status)
+      return status.error();
+  }
+  if (format == MeshFormat::kObj) patched = with_plain_vertices(*bytes);
+  if (patched) importer.SetIOHandler(new PatchedFiles(file, *std::move(patched)));  // the importer owns it
   *bytes = Bytes();
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file, 0);

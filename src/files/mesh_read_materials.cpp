@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "files/gltf_read_container.h"
@@ -186,8 +187,15 @@ class MaterialReader {
     if (bytes || path.rfind("data:", 0) == 0) return bytes;
     const std::string name = path.substr(path.find_last_of("/\\") + 1);
     for (const char* folder : {"", "textures/"})
-      if (Result<Bytes> found = fetch_uri(folder + name, scene_.file); found) return found;
+      if (Result<Bytes> found = fetch_uri(folder + name, scene_.file); found || is_there(folder + name))
+        return found;
+    if (is_there(path)) return bytes;  // it is that one, and cannot be read
     return bad_input(scene_.file, "", "is not there, nor beside the scene file");
+  }
+
+  bool is_there(const std::string& path) const {
+    std::error_code unknown;
+    return std::filesystem::exists(std::filesystem::path(scene_.file).parent_path() / path, unknown);
   }
 
   const aiScene& source_;

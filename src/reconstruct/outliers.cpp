@@ -39,9 +39,16 @@ std::vector<vec3> settle_outliers(const HierarchicalSolver& solver, const Recons
                                   const CancelToken& cancel, ReconstructStats& stats) {
   const ElementPool& pool = solver.pool();
   std::vector<vec3> shown = solver.state().shown;
+  std::vector<uint8_t> found(pool.size());
+  parallel_for(
+      found.size(),
+      [&](size_t id) {
+        if (!cancel.cancelled()) found[id] = is_outlier(pool, static_cast<ElementId>(id)) ? 1 : 0;
+      },
+      4096);
   std::vector<ElementId> outliers;
   for (ElementId id = 0; id < pool.size(); ++id) {
-    if (!is_outlier(pool, id)) continue;
+    if (found[id] == 0) continue;
     const ElementId first = pool[pool[id].parent].first_child, beside = id == first ? first + 1 : first;
     outliers.push_back(id);
     if (pool[beside].first_child == kNoElement && pool[beside].flat) outliers.push_back(beside);

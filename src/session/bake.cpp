@@ -1,5 +1,6 @@
 #include "goldthread/bake.h"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
@@ -7,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 
 #include "base/rng.h"
 #include "element/overlap.h"
@@ -100,6 +102,7 @@ class Bake {
   Status check_options() const;
   Status load();
   Status preprocess();
+  Status build_hierarchies(const CancelToken& stop);
   Status solve();
   void reconstruct_light();
   Status write();
@@ -115,6 +118,21 @@ class Bake {
     if (listener_.on_progress)
       listener_.on_progress({stage, share, rays_per_second, error, since(start_), remaining});
   }
+  /// Runs `work(stop)` on a thread of its own, telling `stage` meanwhile; `stop` is raised when the listener
+  /// asks to stop, or when `reserve` of the time limit is all that is left. Throws what `work` throws.
+  template <typename Work>
+  void run_watched(const std::string& stage, double share, double reserve, const Work& work) {
+    CancelToken stop;
+    std::future<void> done = std::async(std::launch::async, [&] { work(stop); });
+    auto told = Clock::now();
+    while (done.wait_for(std::chrono::milliseconds(2)) != std::future_status::ready) {
+      if (stop_asked() || time_left() < reserve * options_.time_limit.value_or(0)) stop.cancel();
+      if (since(told) < 0.5) continue;
+      told = Clock::now();
+      tell(stage, share);
+    }
+    done.get();
+  }
   double time_left() const {
     return options_.time_limit ? *options_.time_limit - since(start_)
                                : std::numeric_limits<double>::infinity();
@@ -126,7 +144,6 @@ class Bake {
   BakeReport report_;
   BakeResult result_;
   bool cancelled_ = false, out_of_memory_ = false, out_of_time_ = false;
-  CancelToken never_;
 
   Scene scene_;
   SurfaceSet surfaces_;
@@ -172,8 +189,17 @@ Status Bake::load() {
 
 Status Bake::preprocess() {
   tell("preprocess", 0.02);
+  Status status = Nothing{};
+  run_watched("preprocess", 0.03, -1, [&](const CancelToken& stop) { status = build_hierarchies(stop); });
+  if (status && stop_asked())
+    return Error{ErrorCode::kCancelled, "stopped before there was any light to keep", options_.input, {}, {}};
+  return status;
+}
+
+Status Bake::build_hierarchies(const CancelToken& stop) {
   const auto begin = Clock::now();
-  surfaces_ = build_surfaces(scene_, never_);
+  surfaces_ = build_surfaces(scene_, stop);
+  if (stop.cancelled()) return Nothing{};
   report_.seconds.face_clusters = since(begin);
   for (const std::string& warning : describe_problems(surfaces_)) report_.warnings.push_back(warning);
   if (surfaces_.surfaces.empty())
@@ -188,8 +214,6 @@ Status Bake::preprocess() {
                  options_.input,
                  {},
                  "add --sky 1000 or --sun 50000, or give a material an emission"};
-  if (stop_asked())
-    return Error{ErrorCode::kCancelled, "stopped before there was any light to keep", options_.input, {}, {}};
   const auto bvh = Clock::now();
   {
     const WorldTriangles world = world_triangles(surfaces_);
@@ -199,8 +223,12 @@ Status Bake::preprocess() {
     caster_ =
         std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(passing));
     report_.seconds.ray_bvh = since(bvh);
-    settle_overlaps(surfaces_, find_coincident(world.positions, world.triangles, *caster_),
-                    caster_->epsilon());
+    const PlaceClaims claims{
+        [this](uint32_t t) { return contends_for_place(surfaces_, t); },
+        [this](uint32_t first, uint32_t second) { return owns_place(surfaces_, first, second); }};
+    const auto covered = find_coincident(world.positions, world.triangles, *caster_, claims, stop);
+    if (stop.cancelled()) return Nothing{};
+    settle_overlaps(surfaces_, covered, caster_->epsilon());
     report_.warnings.push_back(describe_overlaps(surfaces_));
     std::erase(report_.warnings, std::string());
   }
@@ -265,21 +293,8 @@ void Bake::reconstruct_light() {
   ReconstructOptions options = effort_for(options_.quality).reconstruct;
   if (cancelled_) options.method = Reconstruction::kAverage;
   ReconstructStats stats;
-  CancelToken stop;
-  std::atomic<bool> done{false};
-  std::thread work([&] {
-    lighting_ = reconstruct(*solver_, options, stop, stats);
-    done = true;
-  });
-  auto told = Clock::now();
-  while (!done) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (stop_asked() || time_left() < 0.1 * options_.time_limit.value_or(0)) stop.cancel();
-    if (since(told) < 0.5) continue;
-    told = Clock::now();
-    tell("reconstruct", 0.8);
-  }
-  work.join();
+  run_watched("reconstruct", 0.8, 0.1,
+              [&](const CancelToken& stop) { lighting_ = reconstruct(*solver_, options, stop, stats); });
   lighting_.revision = 1;
   report_.solver.reconstruct_rays = stats.rays.rays;
   report_.seconds.reconstruct = since(begin);
@@ -296,8 +311,11 @@ void Bake::finish_report() {
   report_.solver.epsilon = stats.epsilon;
   report_.solver.error_estimate = stats.error_estimate;
   report_.converged = stats.converged && !stats.limited;
-  const auto [least, most] = irradiance_range(lighting_);
-  report_.irradiance = {least, most};
+  const IrradianceRange irradiance = irradiance_range(lighting_);
+  report_.irradiance = {irradiance.least, irradiance.most};
+  if (irradiance.not_finite > 0)
+    report_.warnings.push_back(fmt::format("the light of {} vertices is not finite: please report this scene",
+                                           irradiance.not_finite));
   if (!cancelled_) report_.power = measure_power(*solver_, 400000, static_cast<uint32_t>(options_.seed));
 }
 

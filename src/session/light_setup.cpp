@@ -83,15 +83,22 @@ float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) 
   return count > 0 ? static_cast<float>(0.25 / std::exp(sum / count)) : 1.0f;
 }
 
-std::pair<double, double> irradiance_range(const Lighting& lighting) {
-  float least = std::numeric_limits<float>::infinity(), most = 0;
+IrradianceRange irradiance_range(const Lighting& lighting) {
+  IrradianceRange range;
+  double least = std::numeric_limits<double>::infinity();
   for (const LitPrimitive& lit : lighting.primitives)
     for (const std::vector<vec3>* side : {&lit.irradiance, &lit.irradiance_back})
       for (const vec3& e : *side) {
-        least = std::min(least, luminance(e));
-        most = std::max(most, luminance(e));
+        const double lux = luminance(e);
+        if (!std::isfinite(lux)) {
+          ++range.not_finite;
+          continue;
+        }
+        least = std::min(least, lux);
+        range.most = std::max(range.most, lux);
       }
-  return {std::min(least, most), most};
+  range.least = std::min(least, range.most);
+  return range;
 }
 
 uint64_t memory_bytes(const SurfaceSet& surfaces) {

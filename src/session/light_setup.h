@@ -1,7 +1,6 @@
 // The lights a user asks for, and what is worth warning about before any light is computed.
 #pragma once
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "element/surface_set.h"
@@ -34,8 +33,13 @@ float transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces);
 /// grey.
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);
 
-/// Least and greatest luminance of all vertices' irradiance, both sides, lx.
-std::pair<double, double> irradiance_range(const Lighting& lighting);
+/// Least and greatest luminance of all vertices' irradiance, both sides, lx; and how many have none that is a
+/// number, which no scene should bring about.
+struct IrradianceRange {
+  double least = 0, most = 0;
+  uint64_t not_finite = 0;
+};
+IrradianceRange irradiance_range(const Lighting& lighting);
 
 /// Bytes of hierarchies and placed geometry.
 uint64_t memory_bytes(const SurfaceSet& surfaces);

@@ -23,11 +23,13 @@ struct Plates {
   }
   const SurfaceSet& settle() {
     set = build_surfaces(scene, CancelToken());
-    std::vector<std::pair<uint32_t, uint32_t>> pairs;
-    for (uint32_t b = 0; b < set.triangles; ++b)
-      for (uint32_t a = 0; a < b; ++a)
-        if (&part_of_triangle(set, a) != &part_of_triangle(set, b)) pairs.emplace_back(a, b);
-    settle_overlaps(set, pairs, 1e-5f);
+    std::vector<std::pair<uint32_t, uint32_t>> covered;
+    for (uint32_t a = 0; a < set.triangles; ++a)
+      for (uint32_t b = 0; b < set.triangles; ++b)
+        if (&part_of_triangle(set, a) != &part_of_triangle(set, b) && contends_for_place(set, a) &&
+            contends_for_place(set, b) && owns_place(set, b, a))
+          covered.emplace_back(a, b);
+    settle_overlaps(set, covered, 1e-5f);
     return set;
   }
 };
@@ -149,6 +151,29 @@ TEST(Overlap, AOneSidedLampDoesNotTakeTheOtherSide) {
   const SurfaceSet& set = plates.settle();
   EXPECT_FLOAT_EQ(set.parts[0].coverage, 1);
   EXPECT_FLOAT_EQ(set.parts[1].coverage, 1);
+}
+
+TEST(Overlap, ClaimsAreAStrictOrder) {
+  Plates plates;
+  for (const bool both : {false, true})
+    for (const float light : {0.0f, 5.0f, 100.0f}) {
+      Material material = test::diffuse(0.5f, light);
+      material.double_sided = both;
+      plates.add_square(material);
+      plates.add(test::turned(test::parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), material);
+    }
+  const SurfaceSet& set = plates.settle();
+  const auto n = static_cast<uint32_t>(set.triangles);
+  for (uint32_t a = 0; a < n; ++a) {
+    EXPECT_FALSE(owns_place(set, a, a));
+    for (uint32_t b = 0; b < n; ++b) {
+      EXPECT_FALSE(owns_place(set, a, b) && owns_place(set, b, a));
+      for (uint32_t c = 0; c < n; ++c)
+        if (owns_place(set, a, b) && owns_place(set, b, c)) {
+          EXPECT_TRUE(owns_place(set, a, c)) << a << " " << b << " " << c;
+        }
+    }
+  }
 }
 
 TEST(Overlap, AlphaAndUnlitTakeNoPart) {

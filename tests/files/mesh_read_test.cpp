@@ -100,6 +100,36 @@ TEST(MeshRead, ObjColoursOfSomeObjectsOnly) {
   }
 }
 
+TEST(MeshRead, ObjCommentsAreNoColours) {
+  TempFolder folder;
+  const Result<Scene> scene =
+      read_scene(folder.write("two.obj",
+                              "v 0 0 0 # three plain words\nv +1 0 0\nv 0 1 0\nf 1 2 3\n"
+                              "v 5 0 0 1 0 0 # red as they come\nv 6 0 0 1 0 0\nv 5 1 0 1 0 0\nf 4 5 6\n"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  size_t red = 0;
+  for (const Mesh& mesh : scene->meshes)
+    for (const Primitive& primitive : mesh.primitives) {
+      ASSERT_EQ(primitive.colours.size(), primitive.positions.size());
+      for (size_t v = 0; v < primitive.positions.size(); ++v) {
+        const bool far = primitive.positions[v].x > 3;
+        EXPECT_EQ(vec3(primitive.colours[v]), far ? vec3(1, 0, 0) : vec3(1)) << primitive.positions[v].x;
+        red += far ? 1 : 0;
+      }
+    }
+  EXPECT_EQ(red, 3u);
+}
+
+TEST(MeshRead, APictureThatCannotBeOpenedIsNotCalledMissing) {
+  TempFolder folder;
+  std::filesystem::create_directory(folder.path("paint.png"));
+  folder.write("box.mtl", "newmtl paint\nmap_Kd C:\\somewhere\\else\\paint.png\n");
+  const Result<Scene> scene = read_scene(folder.write(
+      "box.obj", "mtllib box.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_THAT(scene->warnings, Contains(HasSubstr("not a regular file")));
+}
+
 TEST(MeshRead, WhatHasNoMaterialIsGrey) {
   TempFolder folder;
   const char* const stl =
@@ -265,6 +295,30 @@ TEST(MeshRead, TruncatedPlyIsAnError) {
       EXPECT_EQ(cut.error().code, ErrorCode::kBadInput);
       EXPECT_THAT(cut.error().line(), HasSubstr("cut off"));
     }
+  }
+}
+
+TEST(MeshRead, PlyLinesMayEndInABareCarriageReturn) {
+  TempFolder folder;
+  std::string text = ply_header("ascii") + "0 0 0\n1 0 0\n0 1 0\n", faces;
+  for (int face = 0; face < 40; ++face) {
+    text += "3 0 1 2\n";
+    faces += '\3' + bytes_of<uint32_t>({0, 1, 2});
+  }
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  std::string header = ply_header("binary_little_endian");
+  std::replace(header.begin(), header.end(), '\n', '\r');
+  // A coordinate with the byte of a carriage return in it.
+  const std::string binary = header + bytes_of<float>({0, 0, 0, 8.8125f, 0, 0, 0, 1, 0}) + faces;
+  ASSERT_NE(bytes_of<float>({8.8125f}).find('\r'), std::string::npos);
+  for (const std::string& whole : {text, binary}) {
+    const Result<Scene> scene = read_scene(folder.write("mac.ply", whole));
+    ASSERT_TRUE(scene) << scene.error().line();
+    EXPECT_EQ(scene->triangle_count(), 40u);
+    EXPECT_EQ(scene->bounds().high, whole == text ? vec3(1, 1, 0) : vec3(8.8125f, 1, 0));
+    const Result<Scene> cut = read_scene(folder.write("cut.ply", whole.substr(0, whole.size() - 20)));
+    ASSERT_FALSE(cut);
+    EXPECT_THAT(cut.error().line(), HasSubstr("cut off"));
   }
 }
 

@@ -27,7 +27,10 @@ struct Solved {
     caster = std::make_unique<RayCaster>(
         world.positions, world.triangles, world.see_through,
         [surfaces = set.get(), passing](uint32_t t, vec2 w, const Ray&) { return passing(t, w, *surfaces); });
-    settle_overlaps(*set, find_coincident(world.positions, world.triangles, *caster), caster->epsilon());
+    const PlaceClaims claims{[this](uint32_t t) { return contends_for_place(*set, t); },
+                             [this](uint32_t a, uint32_t b) { return owns_place(*set, a, b); }};
+    settle_overlaps(*set, find_coincident(world.positions, world.triangles, *caster, claims, CancelToken()),
+                    caster->epsilon());
     solver = std::make_unique<HierarchicalSolver>(*set, *caster, options);
   }
   explicit Solved(Scene s, const SolveOptions& options = {})

@@ -23,8 +23,12 @@ struct World {
     }
   }
   RayCaster caster() const { return {positions, triangles}; }
+  /// All contend, and the lower number owns.
   std::vector<std::pair<uint32_t, uint32_t>> coincident() const {
-    return find_coincident(positions, triangles, caster());
+    return coincident({[](uint32_t) { return true; }, [](uint32_t a, uint32_t b) { return a < b; }});
+  }
+  std::vector<std::pair<uint32_t, uint32_t>> coincident(const PlaceClaims& claims) const {
+    return find_coincident(positions, triangles, caster(), claims, CancelToken());
   }
 };
 
@@ -69,14 +73,14 @@ TEST(Coincident, TheSameQuadCutBothWays) {
   World world;
   world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
   world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0}, true);
-  EXPECT_EQ(world.coincident(), (Pairs{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
+  EXPECT_EQ(world.coincident(), (Pairs{{2, 0}, {2, 1}, {3, 0}, {3, 1}}));
 }
 
 TEST(Coincident, ASmallPlateInTheMiddleOfAWall) {
   World world;
   world.quad({0, 0, 0}, {10, 0, 0}, {0, 10, 0});
   world.quad({6, 2, 0}, {0.1f, 0, 0}, {0, 0.1f, 0});  // beneath the wall's diagonal
-  EXPECT_EQ(world.coincident(), (Pairs{{0, 2}, {0, 3}}));
+  EXPECT_EQ(world.coincident(), (Pairs{{2, 0}, {3, 0}}));
 }
 
 TEST(Coincident, WhicheverWayTheyFace) {
@@ -84,6 +88,55 @@ TEST(Coincident, WhicheverWayTheyFace) {
   world.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   world.quad({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, true);
   EXPECT_EQ(world.coincident().size(), 4u);
+}
+
+TEST(Coincident, CopiesBelongToTheBestOfThemAndToNoOther) {
+  World world;
+  constexpr uint32_t kCopies = 300;
+  for (uint32_t k = 0; k < kCopies; ++k) world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
+  const Pairs pairs = world.coincident();
+  ASSERT_EQ(pairs.size(), 2 * (kCopies - 1));  // not a pair for every two of them
+  for (const auto& [covered, owner] : pairs) EXPECT_EQ(owner, covered % 2);
+}
+
+TEST(Coincident, WhatAnOwnerLeavesOpenBelongsToTheNext) {
+  World world;
+  world.quad({0, 0, 0}, {1, 0, 0}, {0, 4, 0});  // owns what it covers
+  world.quad({0, 0, 0}, {2, 0, 0}, {0, 4, 0});  // and this what is left of the widest
+  world.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  const Pairs pairs = world.coincident();
+  const auto has = [&](uint32_t first, uint32_t second) {
+    return std::find(pairs.begin(), pairs.end(), std::pair(first, second)) != pairs.end();
+  };
+  EXPECT_TRUE(has(2, 0) && has(3, 1));
+  EXPECT_TRUE(has(4, 2) || has(4, 3));
+  for (const auto& [covered, owner] : pairs) EXPECT_GT(covered, owner);
+}
+
+TEST(Coincident, OnlyContendersCount) {
+  World world;
+  for (int k = 0; k < 3; ++k) world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
+  const Pairs pairs =
+      world.coincident({[](uint32_t t) { return t >= 2; }, [](uint32_t a, uint32_t b) { return a > b; }});
+  EXPECT_EQ(pairs, (Pairs{{2, 4}, {3, 5}}));
+}
+
+TEST(Coincident, FacesThatNeitherBeatTheOtherBothStay) {
+  World world;
+  for (int k = 0; k < 4; ++k) world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
+  // Even quads face up, odd ones down.
+  const auto beats = [](uint32_t a, uint32_t b) { return a < b && a / 2 % 2 == b / 2 % 2; };
+  const Pairs pairs = world.coincident({[](uint32_t) { return true; }, beats});
+  EXPECT_EQ(pairs, (Pairs{{4, 0}, {5, 1}, {6, 2}, {7, 3}}));
+}
+
+TEST(Coincident, StopsWhenCancelled) {
+  World world;
+  for (int k = 0; k < 3; ++k) world.quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
+  CancelToken stop;
+  stop.cancel();
+  const PlaceClaims claims{[](uint32_t) { return true; }, [](uint32_t a, uint32_t b) { return a < b; }};
+  EXPECT_TRUE(find_coincident(world.positions, world.triangles, world.caster(), claims, stop).empty());
 }
 
 TEST(Coincident, NeitherNeighboursNorNearbyNorCrossing) {

@@ -372,8 +372,8 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
       arriving = count_seen ? share.seen : factor - share.hidden;
       if (count_seen) unoccluded += share.seen + share.hidden;
     } else {
-      arriving =
-          factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i, ray_count);
+      arriving = factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i,
+                                              ray_count, likely);
     }
     received += arriving;
     fit.add(x.position, arriving);

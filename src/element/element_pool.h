@@ -64,7 +64,7 @@ struct SurfacePoint {
 constexpr uint32_t kStoredSamples = 16;
 
 /// Corners of a convex polygon, counter-clockwise from the side that it sends to.
-struct Polygon {
+struct ElementPolygon {
   std::array<vec3, kMaxPolygon> corners;
   size_t count = 0;
   std::span<const vec3> span() const { return {corners.data(), count}; }
@@ -110,7 +110,7 @@ class ElementPool {
   vec3 sky_direction(ElementId id, float u, float v) const;
 
   /// Corners of a triangle or patch.
-  Polygon polygon(ElementId id) const;
+  ElementPolygon polygon(ElementId id) const;
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
   const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_[elements_[id].shape]; }
   const Light& light(ElementId id) const { return set_->scene->lights[elements_[id].shape]; }
@@ -149,11 +149,11 @@ class ElementPool {
   void store_polygon(Patch& patch);
   void expand_sky(ElementId id);
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
-  SurfacePoint sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const;
-  void polygon_quadrature(const Polygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
+  SurfacePoint sample_polygon(const ElementPolygon& polygon, const vec3& normal, float u, float v) const;
+  void polygon_quadrature(const ElementPolygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
                           bool second) const;
-  Polygon triangle_polygon(const Element& element, uint32_t triangle) const;
-  Polygon patch_polygon(const Element& element) const;
+  ElementPolygon triangle_polygon(const Element& element, uint32_t triangle) const;
+  ElementPolygon patch_polygon(const Element& element) const;
 
   const SurfaceSet* set_;
   std::vector<Element> elements_;

@@ -71,14 +71,15 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
 }
 
 SurfacePoint ElementPool::sample_triangle(const Element& element, uint32_t triangle, float u, float v) const {
-  const Polygon polygon = triangle_polygon(element, triangle);
+  const ElementPolygon polygon = triangle_polygon(element, triangle);
   const vec3 n = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
   SurfacePoint point = sample_polygon(polygon, normalize_or(n, vec3(0, 1, 0)), u, v);
   point.triangle = triangle;
   return point;
 }
 
-SurfacePoint ElementPool::sample_polygon(const Polygon& polygon, const vec3& normal, float u, float v) const {
+SurfacePoint ElementPool::sample_polygon(const ElementPolygon& polygon, const vec3& normal, float u,
+                                         float v) const {
   // A fan triangle by area, then a point in it by the square-root map.
   const vec3& a = polygon.corners[0];
   float total = 0;
@@ -102,7 +103,7 @@ SurfacePoint ElementPool::sample_polygon(const Polygon& polygon, const vec3& nor
 SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
                                          float& weight) const {
   const Element& element = elements_[id];
-  Polygon polygon;
+  ElementPolygon polygon;
   float chance = 1;
   uint32_t triangle = element.shape;
   if (element.kind == ElementKind::kPatch) {
@@ -207,7 +208,7 @@ void ElementPool::quadrature(ElementId id, std::span<SurfacePoint> points, bool 
 // Points whose mean and covariance are the polygon's own, so that any quadratic is integrated exactly. Form
 // factors are convex towards a shared edge: random points would be noisy, and the midpoint rule would lose
 // light everywhere.
-void ElementPool::polygon_quadrature(const Polygon& polygon, const vec3& normal,
+void ElementPool::polygon_quadrature(const ElementPolygon& polygon, const vec3& normal,
                                      std::span<SurfacePoint> points, bool second) const {
   const vec3& a = polygon.corners[0];
   const vec3 u = normalize_or(polygon.corners[1] - a, vec3(1, 0, 0)), v = cross(normal, u);

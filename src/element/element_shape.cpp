@@ -139,7 +139,7 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
   const float scale = 1 / std::max(dot(n, n), 1e-30f);
   Paint paint{vec3(0), vec3(0), 0};
   constexpr uint32_t kPoints = 16;
-  Polygon polygon;
+  ElementPolygon polygon;
   polygon.count = patch.corners;
   std::copy(corners.begin(), corners.end(), polygon.corners.begin());
   for (uint32_t i = 0; i < kPoints; ++i) {
@@ -196,7 +196,7 @@ void ElementPool::fill_child(ElementId id) {
 namespace {
 
 // How far `p` lies within a convex polygon of unit normal `n`; negative outside.
-float depth_within(const Polygon& polygon, const vec3& n, const vec3& p) {
+float depth_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) {
   float least = std::numeric_limits<float>::max();
   for (size_t i = 0; i < polygon.count; ++i) {
     const vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
@@ -231,10 +231,10 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
   return id;
 }
 
-Polygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {
+ElementPolygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {
   const Part& part = set_->parts[element.part];
   const UVec3& c = set_->tree(part).mesh.triangles[triangle];
-  Polygon polygon;
+  ElementPolygon polygon;
   polygon.count = 3;
   polygon.corners[0] = part.positions[c.x];
   polygon.corners[1] = part.positions[c.y];
@@ -243,9 +243,9 @@ Polygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle)
   return polygon;
 }
 
-Polygon ElementPool::patch_polygon(const Element& element) const {
+ElementPolygon ElementPool::patch_polygon(const Element& element) const {
   const Patch& patch = patches_[element.shape];
-  Polygon polygon;
+  ElementPolygon polygon;
   polygon.count = patch.corners;
   std::copy_n(&corners_[patch.first_corner], patch.corners, polygon.corners.begin());
   if (orientation(set_->parts[element.part], element) < 0)
@@ -254,7 +254,7 @@ Polygon ElementPool::patch_polygon(const Element& element) const {
   return polygon;
 }
 
-Polygon ElementPool::polygon(ElementId id) const {
+ElementPolygon ElementPool::polygon(ElementId id) const {
   const Element& element = elements_[id];
   return element.kind == ElementKind::kPatch ? patch_polygon(element)
                                              : triangle_polygon(element, element.shape);

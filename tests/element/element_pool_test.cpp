@@ -170,7 +170,7 @@ TEST(ElementPool, MirroredAndTwoSidedInstancesFaceTheRightWay) {
     for (const SurfacePoint& point : points) expect_side(point);
     if (e.kind == ElementKind::kCluster) continue;
     ASSERT_GT(side * dot(e.summed_normal, e.centre - middle[e.part]), 0);
-    const Polygon polygon = pool.polygon(id);
+    const ElementPolygon polygon = pool.polygon(id);
     const vec3 turn = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[1]);
     ASSERT_GT(dot(turn, e.summed_normal), 0) << id;
   }

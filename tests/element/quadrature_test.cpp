@@ -17,7 +17,7 @@ struct Moments {
 };
 
 /// Exact, by the edge-midpoint rule on the fan, which is right for quadratics.
-Moments moments_of(const Polygon& polygon) {
+Moments moments_of(const ElementPolygon& polygon) {
   Moments m;
   const auto add = [&](const auto& value) {
     for (size_t i = 1; i + 1 < polygon.count; ++i) {
@@ -41,7 +41,7 @@ double size_of(const glm::dmat3& m) {
   return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]));
 }
 
-bool inside(const Polygon& polygon, const vec3& normal, const vec3& p, float slack) {
+bool inside(const ElementPolygon& polygon, const vec3& normal, const vec3& p, float slack) {
   for (size_t i = 0; i < polygon.count; ++i) {
     const vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
     if (dot(cross(b - a, p - a), normal) < -slack * length(b - a)) return false;
@@ -53,7 +53,7 @@ void expect_exact(const ElementPool& pool, ElementId id, size_t points) {
   SCOPED_TRACE("element " + std::to_string(id) + " kind " + std::to_string(int(pool[id].kind)));
   std::array<SurfacePoint, 16> at;
   pool.quadrature(id, {at.data(), points});
-  const Polygon polygon = pool.polygon(id);
+  const ElementPolygon polygon = pool.polygon(id);
   const Moments exact = moments_of(polygon);
   const vec3 normal = normalize(pool[id].summed_normal);
   dvec3 mean(0);
@@ -126,7 +126,7 @@ RC_GTEST_PROP(Quadrature, SamplesFillPolygonsEvenly, (uint32_t seed)) {
   Elements elements(std::move(scene));
   elements.expand(3);
   const ElementId id = ElementId(elements.pool->size() - 1);
-  const Polygon polygon = elements.pool->polygon(id);
+  const ElementPolygon polygon = elements.pool->polygon(id);
   const Moments exact = moments_of(polygon);
   RC_PRE(exact.area > 1e-4);
   const vec3 normal = normalize((*elements.pool)[id].summed_normal);

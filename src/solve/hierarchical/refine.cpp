@@ -119,7 +119,8 @@ float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const
   const Element& e = pool[id];
   if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
     float highest = std::numeric_limits<float>::lowest();
-    for (const vec3& corner : pool.polygon(id).span()) highest = std::max(highest, dot(corner - at, n));
+    const ElementPolygon polygon = pool.polygon(id);  // must outlive its span
+    for (const vec3& corner : polygon.span()) highest = std::max(highest, dot(corner - at, n));
     return highest;
   }
   const vec3 axis = normalize_or(e.summed_normal, n);

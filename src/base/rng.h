@@ -1,4 +1,4 @@
-// Small deterministic sequences: integer hashes and the R2 low-discrepancy sequence.
+// Small deterministic sequences: integer hashes and the R2 and R4 low-discrepancy sequences (Roberts 2018).
 #pragma once
 #include <cstdint>
 
@@ -32,6 +32,16 @@ struct UnitSquarePoint {
 inline UnitSquarePoint r2_point(uint32_t i, uint32_t seed) {
   return {unit_float((i + 1) * 0xc13fa9a9u + hash(seed, 1)),
           unit_float((i + 1) * 0x91e10da5u + hash(seed, 2))};
+}
+
+/// The same in four dimensions, for two points that must not follow each other.
+struct TwoSquarePoints {
+  UnitSquarePoint first, second;
+};
+inline TwoSquarePoints r4_point(uint32_t i, uint32_t seed) {
+  return {
+      {unit_float((i + 1) * 0xdb4f0b91u + hash(seed, 1)), unit_float((i + 1) * 0xbbe05633u + hash(seed, 2))},
+      {unit_float((i + 1) * 0xa0f2ec76u + hash(seed, 3)), unit_float((i + 1) * 0x89e18285u + hash(seed, 4))}};
 }
 
 }  // namespace goldthread

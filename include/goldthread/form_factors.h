@@ -1,0 +1,42 @@
+// Form factors (view factors) of pairs of shapes and of whole models.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "goldthread/bake.h"
+#include "goldthread/error.h"
+
+namespace goldthread {
+
+struct FormFactorOptions {
+  enum class Method {
+    kAuto,   ///< exact for models of up to 100 polygons, else rays
+    kExact,  ///< contour integrals; past occluders, the exact visible part integrated to the tolerance
+    kRays,   ///< closed forms for what is unoccluded, rays for the share that is seen
+  };
+  std::string input;                ///< .json or .vs3
+  std::string only;                 ///< this case alone; empty for all
+  Method method = Method::kAuto;    ///< of models; pairs are always exact
+  std::optional<double> tolerance;  ///< relative, past occluders: 1e-5 for pairs, 1e-4 in models
+  uint32_t rays = 16;               ///< a pair, with kRays
+  uint64_t seed = 0;
+  int threads = 0;                             ///< 0: all
+  std::optional<uint64_t> max_memory;          ///< bytes for a matrix
+  bool enforce_reciprocity = false;            ///< what is computed is symmetric already; this proves it
+  bool enforce_closure = false;                ///< scale until rows and their surroundings sum to one
+  std::string json_file, npz_file, text_file;  ///< results; "-" for standard output; empty for none
+};
+
+struct FormFactorResult {
+  std::string text;  ///< for a person: pairs, or small matrices, row sums and what they are off
+  std::vector<std::string> warnings;
+  std::vector<std::string> written;  ///< files
+};
+
+/// Reads, computes, writes. All values lie in 0..1, each with a bound of its error and the method that found
+/// it. `listener.cancelled` ends it with ErrorCode::kCancelled and nothing written.
+Result<FormFactorResult> form_factors(const FormFactorOptions& options, const BakeListener& listener = {});
+
+}  // namespace goldthread

@@ -1,0 +1,401 @@
+#include "solve/matrix/form_factor_matrix.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <optional>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "math/form_factor.h"
+#include "math/polygon_exchange.h"
+#include "visibility/ray_caster.h"
+
+namespace goldthread {
+namespace {
+
+struct Pair {
+  uint32_t column;
+  FormFactorMethod method;
+  float error;
+  double exchange;
+};
+using Row = std::vector<Pair>;
+
+// Points of Strang's 3-point rule, one nearer to each corner: exact to degree 2.
+constexpr double kNear = 2.0 / 3, kBeside = 1.0 / 6;
+constexpr size_t kMostRays = 64;
+
+// A patch as rays need it: single precision, triangles for sampling, points for quadrature.
+struct TracedPatch {
+  std::vector<vec3> corners;
+  std::vector<std::array<vec3, 3>> triangles;
+  std::vector<float> area_up_to;  // running sum over the triangles
+  std::vector<vec3> points;       // of the quadrature
+  std::vector<float> weights;     // their areas
+  vec3 normal{0}, centre{0};
+  float area = 0, radius = 0;
+
+  vec3 sample(float u, float v) const {
+    size_t t = 0;
+    while (t + 1 < triangles.size() && u * area > area_up_to[t]) ++t;
+    const float before = t > 0 ? area_up_to[t - 1] : 0;
+    const float width = area_up_to[t] - before;
+    const float within = std::sqrt(std::clamp(width > 0 ? (u * area - before) / width : 0.5f, 0.0f, 1.0f));
+    const auto& c = triangles[t];
+    return (1 - within) * c[0] + within * ((1 - v) * c[1] + v * c[2]);
+  }
+};
+
+TracedPatch traced(const Polygon& polygon) {
+  TracedPatch out;
+  for (const dvec3& p : polygon) out.corners.emplace_back(p);
+  out.normal = vec3(plane_of(polygon).normal);
+  out.centre = vec3(mean_corner(polygon));
+  out.radius = static_cast<float>(radius(polygon));
+  for (const UVec3& t : triangulate(polygon)) {
+    const dvec3 c[3] = {polygon[t.x], polygon[t.y], polygon[t.z]};
+    const auto size = static_cast<float>(0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0])));
+    out.triangles.push_back({vec3(c[0]), vec3(c[1]), vec3(c[2])});
+    out.area_up_to.push_back(out.area += size);
+    for (int k = 0; k < 3; ++k) {
+      out.points.emplace_back(kNear * c[k] + kBeside * (c[(k + 1) % 3] + c[(k + 2) % 3]));
+      out.weights.push_back(size / 3);
+    }
+  }
+  return out;
+}
+
+RayCaster build_caster(const PatchModel& model) {
+  std::vector<vec3> positions;
+  std::vector<UVec3> triangles;
+  for (const auto* polygons : {&model.patches, &model.occluders})
+    for (const Polygon& polygon : *polygons) {
+      const auto offset = static_cast<uint32_t>(positions.size());
+      for (const dvec3& p : polygon) positions.emplace_back(p);
+      for (const UVec3& t : triangulate(polygon)) triangles.push_back(t + offset);
+    }
+  return {positions, triangles};
+}
+
+bool none_above(const TracedPatch& patch, const TracedPatch& plane, float tolerance) {
+  return std::none_of(patch.corners.begin(), patch.corners.end(),
+                      [&](const vec3& p) { return dot(plane.normal, p - plane.centre) > tolerance; });
+}
+
+class PairTracer {
+ public:
+  PairTracer(const PatchModel& model, const MatrixOptions& options)
+      : model_(model), options_(options), caster_(build_caster(model)) {
+    for (const Polygon& polygon : model.patches) patches_.push_back(traced(polygon));
+  }
+
+  // What i and j exchange: the unobstructed exchange times the share that rays see of it.
+  std::optional<Pair> exchange(uint32_t i, uint32_t j, uint64_t& rays) const {
+    const bool turn = patches_[j].points.size() > patches_[i].points.size();
+    const TracedPatch &from = patches_[turn ? j : i], &to = patches_[turn ? i : j];
+    const float tolerance = 1e-6f * (from.radius + to.radius);
+    if (none_above(from, to, tolerance) || none_above(to, from, tolerance)) return std::nullopt;
+    double open = 0;
+    for (size_t k = 0; k < from.points.size(); ++k)
+      open += static_cast<double>(
+          from.weights[k] * dot(from.normal, polygon_form_factor(from.points[k], from.normal, to.corners)));
+    const bool near = length(from.centre - to.centre) < kNearPair * (from.radius + to.radius);
+    if (open <= 0 && !near) return std::nullopt;
+    const auto [share, deviation] = seen(from, to, hash(hash(i, j), options_.seed), rays);
+    double rule_error = kFarError * open;
+    if (near && share > 0) {
+      const Estimate exact = polygon_exchange(model_.patches[i], model_.patches[j]);
+      open = exact.value;
+      rule_error = exact.error;
+    }
+    if (open * share <= 0) return std::nullopt;
+    return Pair{j, FormFactorMethod::kRays, static_cast<float>(open * 2 * deviation + rule_error),
+                open * share};
+  }
+
+  // Shares of i's cosine-distributed rays that meet nothing and that meet a back.
+  void look_around(uint32_t i, float& environment, float& back) const {
+    const TracedPatch& patch = patches_[i];
+    const vec3 side = normalize(std::abs(patch.normal.x) < 0.7f ? cross(patch.normal, vec3(1, 0, 0))
+                                                                : cross(patch.normal, vec3(0, 1, 0)));
+    const vec3 up = cross(patch.normal, side);
+    uint32_t missed = 0, behind = 0;
+    for (uint32_t k = 0; k < options_.environment_rays; ++k) {
+      const auto [place, direction] = r4_point(k, hash(i, options_.seed));
+      const float r = std::sqrt(direction.u), turn = 2 * kPi * direction.v;
+      Ray ray;
+      ray.direction = r * (std::cos(turn) * side + std::sin(turn) * up) +
+                      std::sqrt(std::max(0.0f, 1 - direction.u)) * patch.normal;
+      ray.origin = patch.sample(place.u, place.v) + caster_.epsilon() * patch.normal;
+      const Hit hit = caster_.closest(ray);
+      if (hit.missed()) ++missed;
+      // Where two opposite faces lie in one place the one that is met by chance says nothing.
+      if (!hit.missed() && dot(hit.normal, ray.direction) > 0 && !is_backed(hit, ray)) ++behind;
+    }
+    const auto count = static_cast<float>(std::max(1u, options_.environment_rays));
+    environment = static_cast<float>(missed) / count;
+    back = static_cast<float>(behind) / count;
+  }
+
+ private:
+  static constexpr float kNearPair = 2.5f;   // in radii: nearer ones are integrated exactly
+  static constexpr double kFarError = 2e-3;  // of the 3-point rule beyond that
+
+  // The share of the exchange that is seen, and its standard deviation.
+  std::pair<double, double> seen(const TracedPatch& from, const TracedPatch& to, uint32_t seed,
+                                 uint64_t& rays) const {
+    const size_t count = std::min<size_t>(options_.rays, kMostRays);
+    std::array<Ray, kMostRays> cast;
+    std::array<float, kMostRays> weight, passing;
+    for (size_t k = 0; k < count; ++k) {
+      const auto [a, b] = r4_point(static_cast<uint32_t>(k), seed);
+      const vec3 x = from.sample(a.u, a.v) + caster_.epsilon() * from.normal,
+                 y = to.sample(b.u, b.v) + caster_.epsilon() * to.normal;
+      const vec3 d = y - x;
+      const float squared = dot(d, d);
+      // As in the integral of F: cos cos / r².
+      weight[k] = squared > 0 ? std::max(0.0f, dot(from.normal, d)) * std::max(0.0f, -dot(to.normal, d)) /
+                                    (squared * squared)
+                              : 0.0f;
+      cast[k].origin = x;
+      cast[k].direction = d;
+      cast[k].far = 1;
+    }
+    for (size_t k = 0; k < count; k += 16) {
+      const size_t some = std::min<size_t>(16, count - k);
+      caster_.transmittance({&cast[k], some}, {&passing[k], some});
+    }
+    rays += count;
+    double all = 0, free = 0, squares = 0;
+    for (size_t k = 0; k < count; ++k) {
+      const auto w = static_cast<double>(weight[k]);
+      all += w;
+      squares += w * w;
+      free += w * static_cast<double>(passing[k]);
+    }
+    if (all <= 0) return {0, 0};
+    const double share = free / all;
+    // Of so many rays as the weights are worth. What all agree on may still be wrong once in so often.
+    const double worth = all * all / squares;
+    const double agreed = (share * worth + 0.5) / (worth + 1);
+    return {share, std::sqrt(agreed * (1 - agreed) / (worth + 1))};
+  }
+
+  bool is_backed(const Hit& hit, const Ray& ray) const {
+    Ray back = ray;
+    back.near = hit.distance;
+    const vec3 place = ray.origin + hit.distance * ray.direction;
+    back.origin = place + 4 * caster_.epsilon() * ray.direction;
+    back.direction = -ray.direction;
+    back.near = 0;
+    back.far = 8 * caster_.epsilon();
+    const Hit from_behind = caster_.closest(back);
+    return !from_behind.missed() && dot(from_behind.normal, back.direction) > 0;
+  }
+
+  const PatchModel& model_;
+  const MatrixOptions& options_;
+  RayCaster caster_;
+  std::vector<TracedPatch> patches_;
+};
+
+// Builds rows in parallel and puts them together in order.
+class MatrixBuilder {
+ public:
+  MatrixBuilder(const PatchModel& model, const MatrixOptions& options, const CancelToken& cancel,
+                const std::function<void(double)>& progress)
+      : model_(model), options_(options), cancel_(cancel), progress_(progress), tracer_(model, options) {
+    exact_ = options.method == MatrixMethod::kExact ||
+             (options.method == MatrixMethod::kAuto &&
+              model.patches.size() + model.occluders.size() <= kMostExact);
+    if (!exact_) return;
+    std::vector<Polygon> all = model.patches;
+    all.insert(all.end(), model.occluders.begin(), model.occluders.end());
+    std::vector<uint32_t> owners(all.size());
+    std::iota(owners.begin(), owners.end(), 0u);
+    blockers_.emplace(all, owners);
+  }
+
+  Result<FormFactorMatrix> build() {
+    const size_t n = model_.patches.size();
+    FormFactorMatrix matrix;
+    for (const Polygon& polygon : model_.patches) matrix.areas.push_back(area(polygon));
+    matrix.environment.resize(n);
+    matrix.back.resize(n);
+    std::vector<Row> rows(n);
+    parallel_for(n, [&](size_t i) {
+      if (stopped()) return;
+      rows[i] = row(static_cast<uint32_t>(i));
+      tracer_.look_around(static_cast<uint32_t>(i), matrix.environment[i], matrix.back[i]);
+      done(rows[i], i);
+    });
+    if (cancel_.cancelled()) return Error{ErrorCode::kCancelled, "stopped", {}, {}, {}};
+    if (full_)
+      return Error{ErrorCode::kLimit,
+                   fmt::format("the form factors of {} patches need more memory than allowed", n),
+                   {},
+                   {},
+                   "raise --max-memory, or give fewer patches"};
+    matrix.share_error = 1 / std::sqrt(static_cast<float>(std::max(1u, options_.environment_rays)));
+    matrix.rays = rays_ + n * options_.environment_rays;
+    put_together(rows, matrix);
+    return matrix;
+  }
+
+ private:
+  bool stopped() const { return cancel_.cancelled() || full_; }
+
+  Row row(uint32_t i) {
+    Row out;
+    uint64_t rays = 0;
+    for (uint32_t j = i + 1; j < model_.patches.size() && !stopped(); ++j) {
+      if (const std::optional<Pair> pair = exact_ ? exact_pair(i, j) : tracer_.exchange(i, j, rays))
+        out.push_back(*pair);
+    }
+    out.shrink_to_fit();
+    rays_ += rays;
+    return out;
+  }
+
+  std::optional<Pair> exact_pair(uint32_t i, uint32_t j) const {
+    const Polygon &a = model_.patches[i], &b = model_.patches[j];
+    CubatureLimits limits = options_.limits;
+    limits.absolute *= std::min(area(a), area(b));
+    const Exchange exchange = visible_exchange(a, b, blockers_->between(a, b, i, j), limits);
+    if (exchange.area.value <= 0) return std::nullopt;
+    return Pair{j, exchange.method, static_cast<float>(exchange.area.error), exchange.area.value};
+  }
+
+  void done(const Row& row, size_t i) {
+    const uint64_t bytes = bytes_ += row.capacity() * sizeof(Pair);
+    // While it is put together it is there twice.
+    if (options_.max_memory > 0 && 2 * bytes > options_.max_memory) full_ = true;
+    const double pairs = static_cast<double>(model_.patches.size() - i);
+    const std::lock_guard guard(lock_);
+    const auto n = static_cast<double>(model_.patches.size());
+    done_ += pairs / (0.5 * n * (n + 1));
+    if (progress_) progress_(std::min(1.0, done_));
+  }
+
+  static void put_together(std::vector<Row>& rows, FormFactorMatrix& matrix) {
+    matrix.first.assign(1, 0);
+    uint64_t count = 0;
+    for (const Row& row : rows) matrix.first.push_back(count += row.size());
+    matrix.column.reserve(count);
+    matrix.exchange.reserve(count);
+    matrix.error.reserve(count);
+    matrix.method.reserve(count);
+    for (Row& row : rows) {
+      for (const Pair& pair : row) {
+        matrix.column.push_back(pair.column);
+        matrix.exchange.push_back(pair.exchange);
+        matrix.error.push_back(pair.error);
+        matrix.method.push_back(pair.method);
+      }
+      row = Row();
+    }
+  }
+
+  const PatchModel& model_;
+  const MatrixOptions& options_;
+  const CancelToken& cancel_;
+  const std::function<void(double)>& progress_;
+  PairTracer tracer_;
+  bool exact_ = false;
+  std::optional<Blockers> blockers_;
+  std::atomic<uint64_t> bytes_{0}, rays_{0};
+  std::atomic<bool> full_{false};
+  std::mutex lock_;
+  double done_ = 0;
+};
+
+}  // namespace
+
+uint64_t FormFactorMatrix::memory_bytes() const {
+  return areas.capacity() * sizeof(double) + first.capacity() * sizeof(uint64_t) +
+         column.capacity() * (sizeof(uint32_t) + sizeof(double) + sizeof(float) + sizeof(FormFactorMethod)) +
+         (environment.capacity() + back.capacity()) * sizeof(float);
+}
+
+std::vector<double> FormFactorMatrix::row_sums() const {
+  std::vector<double> sums(size());
+  for (size_t i = 0; i < size(); ++i)
+    for (uint64_t k = first[i]; k < first[i + 1]; ++k) {
+      sums[i] += exchange[k] / areas[i];
+      sums[column[k]] += exchange[k] / areas[column[k]];
+    }
+  return sums;
+}
+
+std::vector<double> FormFactorMatrix::row_error_bounds() const {
+  // Bounds add up; standard errors, which are independent, add up in quadrature.
+  std::vector<double> bounds(size()), squares(size());
+  const auto add = [&](size_t i, uint64_t k) {
+    const double e = static_cast<double>(error[k]) / areas[i];
+    if (method[k] == FormFactorMethod::kRays) {
+      squares[i] += e * e;
+    } else {
+      bounds[i] += e;
+    }
+  };
+  for (size_t i = 0; i < size(); ++i)
+    for (uint64_t k = first[i]; k < first[i + 1]; ++k) {
+      add(i, k);
+      add(column[k], k);
+    }
+  for (size_t i = 0; i < size(); ++i) bounds[i] += std::sqrt(squares[i]);
+  return bounds;
+}
+
+Result<FormFactorMatrix> build_form_factor_matrix(const PatchModel& model, const MatrixOptions& options,
+                                                  const CancelToken& cancel,
+                                                  const std::function<void(double)>& progress) {
+  return MatrixBuilder(model, options, cancel, progress).build();
+}
+
+Result<double> enforce_closure(FormFactorMatrix& matrix) {
+  constexpr int kMostRounds = 10000;
+  constexpr double kClosed = 1e-12;
+  const size_t n = matrix.size();
+  std::vector<double> wanted(n), scale(n, 1.0), sums(n);
+  for (size_t i = 0; i < n; ++i)
+    wanted[i] = matrix.areas[i] * (1 - static_cast<double>(matrix.environment[i] + matrix.back[i]));
+  double off = 1;
+  for (int round = 0; round < kMostRounds && off > kClosed; ++round) {
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (size_t i = 0; i < n; ++i)
+      for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
+        const uint32_t j = matrix.column[k];
+        sums[i] += matrix.exchange[k] * scale[i] * scale[j];
+        sums[j] += matrix.exchange[k] * scale[i] * scale[j];
+      }
+    off = 0;
+    for (size_t i = 0; i < n; ++i) {
+      if (wanted[i] <= 1e-9 * matrix.areas[i]) continue;
+      if (sums[i] <= 0)
+        return Error{ErrorCode::kBadInput,
+                     "its row is empty and cannot be closed",
+                     {},
+                     fmt::format("surface {}", i + 1),
+                     "leave out --enforce-closure"};
+      off = std::max(off, std::abs(sums[i] - wanted[i]) / matrix.areas[i]);
+      // The root: the other side of every entry is scaled as well.
+      scale[i] *= std::sqrt(wanted[i] / sums[i]);
+    }
+  }
+  double change = 0;
+  for (size_t i = 0; i < n; ++i)
+    for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
+      const double by = scale[i] * scale[matrix.column[k]];
+      matrix.exchange[k] *= by;
+      change = std::max(change, std::abs(by - 1));
+    }
+  return change;
+}
+
+}  // namespace goldthread

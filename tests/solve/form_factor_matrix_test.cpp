@@ -1,0 +1,217 @@
+// Matrices of form factors: exact values, conservation, both methods against each other.
+#include "solve/matrix/form_factor_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "solve/matrix/fold_surfaces.h"
+
+namespace goldthread {
+namespace {
+
+Polygon rectangle(const dvec3& corner, const dvec3& across, const dvec3& up) {
+  return {corner, corner + across, corner + across + up, corner + up};
+}
+
+/// The unit cube's faces, seen from inside, each cut into n x n.
+PatchModel room(int n) {
+  PatchModel model;
+  const dvec3 o(0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const std::array<std::array<dvec3, 3>, 6> faces{
+      {{o, x, y}, {z, y, x}, {o, y, z}, {x, z, y}, {o, z, x}, {y, x, z}}};
+  for (const auto& [corner, across, up] : faces)
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < n; ++k)
+        model.patches.push_back(rectangle(corner + double(i) / n * across + double(k) / n * up,
+                                          across / double(n), up / double(n)));
+  return model;
+}
+
+FormFactorMatrix built(const PatchModel& model, const MatrixOptions& options) {
+  Result<FormFactorMatrix> matrix = build_form_factor_matrix(model, options, CancelToken());
+  if (!matrix) throw std::runtime_error(matrix.error().line());
+  return *std::move(matrix);
+}
+
+double form_factor(const FormFactorMatrix& matrix, uint32_t from, uint32_t to) {
+  const auto [row, column] = std::minmax(from, to);
+  for (uint64_t k = matrix.first[row]; k < matrix.first[row + 1]; ++k)
+    if (matrix.column[k] == column) return matrix.exchange[k] / matrix.areas[from];
+  return 0;
+}
+
+TEST(FormFactorMatrix, ACubesRowsSumToOneExactly) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix matrix = built(room(2), options);
+  for (const double sum : matrix.row_sums()) EXPECT_NEAR(sum, 1, 1e-10);
+  for (const float share : matrix.environment) EXPECT_EQ(share, 0);
+  for (const float share : matrix.back) EXPECT_EQ(share, 0);
+}
+
+TEST(FormFactorMatrix, RaysAgreeWithTheExactMatrixWithinWhatTheySay) {
+  PatchModel model = room(2);
+  model.occluders = {rectangle({0.3, 0.2, 0.4}, {0.5, 0, 0.1}, {0, 0.4, 0}),
+                     rectangle({0.6, 0.7, 0.1}, {0, 0, 0.7}, {0.2, 0.1, 0})};
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix exact = built(model, options);
+  options.method = MatrixMethod::kRays;
+  options.rays = 64;
+  const FormFactorMatrix rays = built(model, options);
+  size_t pairs = 0, off = 0;
+  for (uint32_t i = 0; i < rays.size(); ++i)
+    for (uint64_t k = rays.first[i]; k < rays.first[i + 1]; ++k, ++pairs) {
+      const double truth = form_factor(exact, i, rays.column[k]) * exact.areas[i];
+      if (std::abs(rays.exchange[k] - truth) > static_cast<double>(rays.error[k])) ++off;
+    }
+  EXPECT_GT(pairs, 200u);
+  EXPECT_LT(off, pairs / 20);  // two standard errors
+  const std::vector<double> sums = rays.row_sums(), bounds = rays.row_error_bounds();
+  for (uint32_t i = 0; i < rays.size(); ++i) {
+    // What the occluders take is by their backs and fronts: both count as something else than patches.
+    EXPECT_NEAR(sums[i], exact.row_sums()[i], 1.5 * bounds[i]);
+  }
+}
+
+TEST(FormFactorMatrix, RowsAndTheirSurroundingsSumToOne) {
+  PatchModel model = room(4);
+  model.patches.erase(model.patches.begin() + 5, model.patches.begin() + 16);  // a hole
+  MatrixOptions options;
+  options.method = MatrixMethod::kRays;
+  const FormFactorMatrix matrix = built(model, options);
+  const std::vector<double> sums = matrix.row_sums(), bounds = matrix.row_error_bounds();
+  double escaped = 0;
+  for (size_t i = 0; i < matrix.size(); ++i) {
+    const double all = sums[i] + static_cast<double>(matrix.environment[i] + matrix.back[i]);
+    EXPECT_NEAR(all, 1, 1.5 * bounds[i] + static_cast<double>(matrix.share_error));
+    escaped += static_cast<double>(matrix.environment[i]);
+  }
+  EXPECT_GT(escaped, 1);
+}
+
+TEST(FormFactorMatrix, TheSameForAnyNumberOfThreadsAndTwice) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kRays;
+  const FormFactorMatrix one = built(room(3), options), two = built(room(3), options);
+  EXPECT_EQ(one.exchange, two.exchange);
+  EXPECT_EQ(one.column, two.column);
+  options.seed = 1;
+  PatchModel model = room(3);
+  model.occluders = {rectangle({0.3, 0.2, 0.4}, {0.5, 0, 0.1}, {0, 0.4, 0})};
+  const FormFactorMatrix other = built(model, options);
+  EXPECT_NE(one.exchange, other.exchange);
+}
+
+TEST(FormFactorMatrix, StopsAtTheMemoryLimitAndWhenCancelled) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kRays;
+  options.max_memory = 10000;
+  const Result<FormFactorMatrix> full = build_form_factor_matrix(room(5), options, CancelToken());
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().code, ErrorCode::kLimit);
+  CancelToken stop;
+  stop.cancel();
+  options.max_memory = 0;
+  const Result<FormFactorMatrix> stopped = build_form_factor_matrix(room(5), options, stop);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+}
+
+TEST(FormFactorMatrix, ProgressGrowsToOne) {
+  double last = 0;
+  MatrixOptions options;
+  options.method = MatrixMethod::kRays;
+  ASSERT_TRUE(build_form_factor_matrix(room(2), options, CancelToken(), [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+  }));
+  EXPECT_NEAR(last, 1, 1e-9);
+}
+
+TEST(Closure, RowsSumToOneAndStaySymmetric) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kRays;
+  FormFactorMatrix matrix = built(room(3), options);
+  double before = 0;
+  for (const double sum : matrix.row_sums()) before = std::max(before, std::abs(sum - 1));
+  EXPECT_GT(before, 1e-6);
+  const Result<double> change = enforce_closure(matrix);
+  ASSERT_TRUE(change);
+  EXPECT_LT(*change, 0.1);
+  for (const double sum : matrix.row_sums()) EXPECT_NEAR(sum, 1, 1e-11);
+  for (const double exchange : matrix.exchange) EXPECT_GT(exchange, 0);
+}
+
+TEST(FoldSurfaces, AWindowIsTakenOutOfItsWall) {
+  // The whole floor as base, a quarter of it as subsurface: as if the floor had been cut.
+  PatchModel model = room(1), cut = room(1);
+  const Polygon window = rectangle({0.25, 0.25, 0}, {0.5, 0, 0}, {0, 0.5, 0});
+  model.patches.push_back(window);
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix whole = built(model, options);
+  SurfaceRoles roles;
+  roles.base.assign(7, SurfaceRoles::kNone);
+  roles.combined.assign(7, SurfaceRoles::kNone);
+  roles.base[6] = 0;
+  std::vector<uint32_t> kept;
+  const FormFactorMatrix folded = fold_surfaces(whole, roles, kept);
+  EXPECT_EQ(kept.size(), 7u);
+  EXPECT_NEAR(folded.areas[0], 0.75, 1e-12);
+  for (const double sum : folded.row_sums()) EXPECT_NEAR(sum, 1, 1e-10);
+  EXPECT_NEAR(form_factor(folded, 1, 0) + form_factor(folded, 1, 6), form_factor(whole, 1, 0), 1e-12);
+}
+
+TEST(FoldSurfaces, PartsThatAreCombinedAreOne) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix parts = built(room(2), options), whole = built(room(1), options);
+  SurfaceRoles roles;
+  roles.base.assign(24, SurfaceRoles::kNone);
+  for (uint32_t p = 0; p < 24; ++p) roles.combined.push_back(p % 4 == 0 ? SurfaceRoles::kNone : p / 4 * 4);
+  std::vector<uint32_t> kept;
+  const FormFactorMatrix folded = fold_surfaces(parts, roles, kept);
+  ASSERT_EQ(folded.size(), 6u);
+  for (uint32_t i = 0; i < 6; ++i)
+    for (uint32_t j = 0; j < 6; ++j) {
+      if (i == j) continue;
+      EXPECT_NEAR(form_factor(folded, i, j), form_factor(whole, i, j), 1e-10);
+    }
+}
+
+TEST(FormFactorMatrix, SharedRooms) {
+  const std::filesystem::path file =
+      std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factor_matrices.json";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  std::ifstream stream(file);
+  const nlohmann::json cases = nlohmann::json::parse(stream)["cases"];
+  EXPECT_EQ(cases.size(), 9u);
+  for (const auto& item : cases) {
+    PatchModel model;
+    for (const auto& surface : item["surfaces"]) {
+      Polygon& polygon = model.patches.emplace_back();
+      for (const auto& v : surface["vertices"]) polygon.emplace_back(v[0], v[1], v[2]);
+    }
+    MatrixOptions options;
+    options.method = MatrixMethod::kExact;
+    const FormFactorMatrix matrix = built(model, options);
+    double worst = 0;
+    for (uint32_t i = 0; i < matrix.size(); ++i)
+      for (uint32_t j = 0; j < matrix.size(); ++j) {
+        if (i == j) continue;
+        const double exact = item["F"][i][j];
+        EXPECT_NEAR(form_factor(matrix, i, j), exact, 1e-4 * exact + 1e-9) << item["id"] << i << " " << j;
+        worst = std::max(worst, std::abs(form_factor(matrix, i, j) - exact));
+      }
+    RecordProperty(item["id"].get<std::string>(), std::to_string(worst));
+    std::vector<double> sums = matrix.row_sums();
+    for (const double sum : sums) EXPECT_NEAR(sum, 1, 1e-4) << item["id"];
+  }
+}
+
+}  // namespace
+}  // namespace goldthread

@@ -65,7 +65,7 @@ bool from_behind(const Hit& hit, const Ray& ray) {
 class Stand {
  public:
   Stand(const RayCaster& caster, const vec3& position, const vec3& normal, float turn)
-      : caster_(caster), origin_(position + caster.epsilon() * normal) {
+      : caster_(caster), normal_(normal), origin_(position + caster.epsilon() * normal) {
     const mat3 straight = frame_about(normal);
     const float c = std::cos(turn), s = std::sin(turn);
     frame_ = mat3(c * straight[0] + s * straight[1], c * straight[1] - s * straight[0], normal);
@@ -76,13 +76,21 @@ class Stand {
     bool behind;
   };
 
-  /// What lies in a unit direction of the grid.
+  /// What lies in a unit direction of the grid. At the foot of a wall rounding decides on which side of it a
+  /// receiver is. So rays begin a little back from where they go, always as high over the receiver: those
+  /// towards the wall's front meet it, and those that come out of its back take a step before it.
   Meeting meet(const vec3& direction) const {
-    Ray ray{origin_, frame_ * direction};
+    const float epsilon = caster_.epsilon();
+    Ray ray{origin_ - epsilon * (frame_ * vec3(direction.x, direction.y, 0)), frame_ * direction};
     Hit hit = caster_.closest(ray);
-    // A receiver in the plane of a wall is before the wall, and what leaves the wall's front is not stopped.
-    if (from_behind(hit, ray) && hit.distance < caster_.epsilon()) {
-      ray.near = caster_.epsilon();
+    const auto leaves_wall = [&] { return hit.distance < 2 * epsilon && from_behind(hit, ray); };
+    for (int walls = 0; walls < 2 && leaves_wall(); ++walls) {  // there are two in a corner
+      const vec3 facing = normalize_or(hit.normal, vec3(0));
+      ray.origin += 2 * epsilon * (facing - dot(facing, normal_) * normal_);
+      hit = caster_.closest(ray);
+    }
+    if (leaves_wall()) {  // it lies too flat to step before it
+      ray.near = 2 * epsilon;
       hit = caster_.closest(ray);
     }
     return {hit.triangle, from_behind(hit, ray)};
@@ -90,8 +98,8 @@ class Stand {
 
  private:
   const RayCaster& caster_;
+  vec3 normal_, origin_;
   mat3 frame_{1};
-  vec3 origin_;
 };
 
 void add(SeenShare& share, double form_factor, bool behind) {

@@ -52,9 +52,9 @@ struct HemisphereScan {
 
 /// Point-to-triangle form factors, with occlusion, from a receiver at `position` of unit `normal` to all that
 /// it sees (Cohen and Greenberg 1985; Cohen et al. 1988). Rays begin epsilon() off the receiver along its
-/// normal. A receiver in the plane of another surface, as at the foot of a wall, counts as before its front:
-/// the wall gets its half, and where it is met from behind, nearer than epsilon(), rays go on. A receiver
-/// that rounding has put behind the wall, or one in a corner, may see past it instead.
+/// normal. A receiver nearer than about that to another surface's plane, as at the foot of a wall or in a
+/// corner, counts as before its front: the wall fills half the view, and its back stops nothing. Of rays that
+/// graze it a few are lost to rounding, less than 1/50 of the view.
 ///
 /// What is partly transparent stops its share of the rays, which ones a hash of the ray decides (see
 /// RayCaster::closest); the grain counts as outline, and the error grows.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/check.h"
 #include "base/rng.h"
@@ -76,9 +77,9 @@ class Stand {
     bool behind;
   };
 
-  /// What lies in a unit direction of the grid. At the foot of a wall rounding decides on which side of it a
-  /// receiver is. So rays begin a little back from where they go, always as high over the receiver: those
-  /// towards the wall's front meet it, and those that come out of its back take a step before it.
+  // What lies in a unit direction of the grid. At the foot of a wall rounding decides on which side of it a
+  // receiver is. So rays begin a little back from where they go, always as high over the receiver: those
+  // towards the wall's front meet it, and those that come out of its back take a step before it.
   Meeting meet(const vec3& direction) const {
     const float epsilon = caster_.epsilon();
     Ray ray{origin_ - epsilon * (frame_ * vec3(direction.x, direction.y, 0)), frame_ * direction};

@@ -34,6 +34,8 @@ pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 add_library(goldthread::webp ALIAS PkgConfig::WEBP)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)  # its CMake file names parts that Debian packs apart
 add_library(goldthread::openexr ALIAS PkgConfig::OPENEXR)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+add_library(goldthread::libzip ALIAS PkgConfig::LIBZIP)
 pkg_check_modules(SQLITE3 REQUIRED IMPORTED_TARGET sqlite3)
 add_library(goldthread::sqlite3 ALIAS PkgConfig::SQLITE3)
 

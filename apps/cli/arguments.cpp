@@ -74,7 +74,7 @@ Status check_verb(const CLI::App& app, const std::vector<std::string>& arguments
   if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return Nothing{};
   const auto is_it = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
   if (!app.get_subcommands(is_it).empty()) return Nothing{};
-  return usage_error("there is no verb '" + arguments[0] + "'", "choose make, info or bake");
+  return usage_error("there is no verb '" + arguments[0] + "'", "choose make, info, bake or formfactors");
 }
 
 void add_make(CLI::App& app, MakeCommand& make) {
@@ -222,6 +222,8 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   add_bake_effort(*bake_verb, bake, texts);
   add_bake_light(*bake_verb, texts);
   bake_verb->footer(kBakeExamples);
+  FormFactorCommand form_factors;
+  add_form_factors(app, form_factors);
 
   if (const Status status = check_verb(app, arguments); !status) return status.error();
   complete_sun(arguments);
@@ -240,6 +242,10 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
     return Command(make);
   }
   if (app.got_subcommand("info")) return Command(info);
+  if (app.got_subcommand("formfactors")) {
+    if (const Status status = finish_form_factors(app, form_factors); !status) return status.error();
+    return Command(form_factors);
+  }
   if (const Status status = finish_bake(*bake_verb, texts, bake.options); !status) return status.error();
   return Command(bake);
 }

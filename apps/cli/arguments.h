@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "form_factor_arguments.h"
 #include "goldthread/bake.h"
 
 namespace goldthread::cli {
@@ -28,7 +29,7 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, ShowText>;
+using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, FormFactorCommand, ShowText>;
 
 /// `arguments` without the program's name. Wrong usage is an Error with code kUsage.
 Result<Command> parse_arguments(std::vector<std::string> arguments);

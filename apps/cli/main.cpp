@@ -67,6 +67,23 @@ int run(const BakeCommand& command) {
   return result->cancelled ? static_cast<int>(ErrorCode::kCancelled) : code;
 }
 
+int run(const FormFactorCommand& command) {
+  catch_interrupts();
+  ProgressLine progress(command.quiet);
+  BakeListener listener;
+  listener.on_progress = [&](const BakeEvent& event) { progress.show(event); };
+  listener.cancelled = interrupted;
+  const Result<FormFactorResult> result = form_factors(command.options, listener);
+  progress.clear();
+  if (!result) return fail(result.error());
+  if (command.quiet) return 0;
+  for (const std::string& warning : result->warnings)
+    fmt::print(stderr, "goldthread: warning: {}\n", warning);
+  std::string text = result->text;
+  for (const std::string& file : result->written) text += "wrote " + file + "\n";
+  return print_out(text);
+}
+
 int run_program(int count, char** values) {
   const Result<Command> command =
       parse_arguments(std::vector<std::string>(values + (count > 0), values + count));

@@ -24,9 +24,9 @@ struct FormFactorOptions {
   uint64_t seed = 0;
   int threads = 0;                             ///< 0: all
   std::optional<uint64_t> max_memory;          ///< bytes for a matrix
-  bool enforce_reciprocity = false;            ///< what is computed is symmetric already; this proves it
+  bool enforce_reciprocity = false;            ///< every method here keeps it by itself: nothing to do
   bool enforce_closure = false;                ///< scale until rows and their surroundings sum to one
-  std::string json_file, npz_file, text_file;  ///< results; "-" for standard output; empty for none
+  std::string json_file, npz_file, text_file;  ///< results; empty for none
 };
 
 struct FormFactorResult {

@@ -117,9 +117,11 @@ class Vs3Reader {
     // Number, shape or four vertices, then base, whole, emittance and name.
     const size_t after = by_origin_ ? 3 : 6;
     const std::string start = place_;
+    Polygon corners;
+    if (!by_origin_) corners = listed_corners();
     const int64_t base = whole(after), combined = whole(after + 1);
     const std::string name = words_.size() > after + 3 ? words_[after + 3] : fmt::format("surface {}", id);
-    Polygon corners = by_origin_ ? placed_corners() : listed_corners();
+    if (by_origin_) corners = placed_corners();  // on lines of their own
     place_ = fmt::format("{}: surface {}", start, id);
     if (const std::optional<std::string> problem = polygon_problem(corners)) fail(*problem);
     if (only_blocks) {

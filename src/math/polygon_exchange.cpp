@@ -83,7 +83,7 @@ Estimate polygon_exchange(std::span<const dvec3> first, std::span<const dvec3> s
     }
   }
   const double scale = 1 / (2 * kPiExact);
-  return {std::max(0.0, scale * sum.value), scale * (sum.error + 8 * kPrecise * terms)};
+  return {std::max(0.0, scale * sum.value), scale * (sum.error + 32 * kPrecise * terms)};
 }
 
 }  // namespace goldthread

@@ -35,7 +35,7 @@ class CliTest(unittest.TestCase):
 
     def test_help_and_version(self):
         self.assertIn("Examples:", self.run_it("--help").stdout)
-        for verb in ("make", "info", "bake"):
+        for verb in ("make", "info", "bake", "formfactors"):
             done = self.run_it(verb, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("--help", done.stdout)
@@ -107,6 +107,44 @@ class CliTest(unittest.TestCase):
         self.assertGreater(json.loads(self.path("r.json").read_text())["power_lm"]["emitted"], 0)
         quiet = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "--quality", "draft", "--quiet")
         self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    SQUARES = {"surfaces": [{"name": "floor", "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]},
+                            {"name": "lid", "vertices": [[0, 1, 1], [1, 1, 1], [1, 0, 1], [0, 0, 1]]}]}
+
+    def test_formfactors(self):
+        pair = {"id": "p", "from": {"type": "polygon", **self.SQUARES["surfaces"][0]},
+                "to": {"type": "polygon", **self.SQUARES["surfaces"][1]}}
+        self.path("cases.json").write_text(json.dumps({"cases": [pair, {"id": "m", **self.SQUARES}]}))
+        done = self.run_it("formfactors", "cases.json", "--json", "f.json", "--text", "f.txt")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        facts = json.loads(self.path("f.json").read_text())
+        exact = 0.199824895698387383  # Howell C-11
+        self.assertEqual([p["id"] for p in facts["pairs"]], ["p", "m", "m"])
+        for answer in facts["pairs"]:
+            self.assertAlmostEqual(answer["value"], exact, delta=answer["error_bound"] + 1e-14)
+            self.assertEqual(answer["method"], "contour")
+        self.assertEqual(len(facts["row_sums"]), 2)
+        self.assertAlmostEqual(facts["row_sums"][0], exact, places=12)
+        self.assertAlmostEqual(facts["cases"][0]["environment"][0], 1 - exact, delta=0.05)
+        self.assertEqual(len(self.path("f.txt").read_text().splitlines()), 3)
+        self.assertIn("floor", done.stdout)
+        self.assert_fails(2, ["--npz", "--case"], "formfactors", "cases.json", "--npz", "f.npz")
+        self.assert_fails(2, ["nosuch"], "formfactors", "cases.json", "--case", "nosuch")
+        self.assertEqual(self.run_it("formfactors", "cases.json", "--case", "m", "--npz", "f.npz").returncode, 0)
+        self.assertEqual(self.path("f.npz").read_bytes()[:2], b"PK")
+
+    def test_formfactors_name_what_is_wrong(self):
+        self.path("bent.json").write_text(
+            '{"surfaces":[{"vertices":[[0,0,0],[1,0,0],[1,1,0.4],[0,1,0]]}]}')
+        self.assert_fails(3, ["bent.json", "surface 1", "planar"], "formfactors", "bent.json")
+        self.path("mask.vs3").write_text("F 3\nV 1 0 0 0\nM 1 1 1 1 1 0 0 1\n")
+        self.assert_fails(3, ["mask.vs3", "line 3"], "formfactors", "mask.vs3")
+        self.path("x.txt").write_text("?")
+        self.assert_fails(2, ["x.txt", ".vs3"], "formfactors", "x.txt")
+        self.assert_fails(2, ["--method"], "formfactors", "bent.json", "--method", "guess")
+        self.path("ok.json").write_text(json.dumps(self.SQUARES))
+        self.assert_fails(6, ["gone/f.json"], "formfactors", "ok.json", "--json", "gone/f.json")
+        self.assertFalse(self.path("f.json").exists())
 
     def test_sun_stands_alone_before_the_scene(self):
         self.run_it("make", "cornell-box")

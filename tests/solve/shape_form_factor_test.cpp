@@ -78,11 +78,26 @@ TEST(ShapeFormFactor, TwoSpheresSendEachOtherTheSame) {
   EXPECT_NEAR(factor(small, large) * shape_area(small) / shape_area(large), factor(large, small), 1e-7);
 }
 
+TEST(ShapeFormFactor, ATubeWithItsEndsIsClosed) {
+  for (const double h : {0.3, 2.0, 9.0}) {
+    const CylinderShape tube{{0, 0, 0}, {0, 0, 1}, 1, h, true};
+    const DiscShape bottom{{0, 0, 0}, {0, 0, 1}, 1}, top{{0, 0, h}, {0, 0, -1}, 1};
+    EXPECT_NEAR(factor(tube, tube) + factor(tube, bottom) + factor(tube, top), 1, 1e-7) << h;
+    EXPECT_NEAR(factor(bottom, top) + factor(bottom, tube), 1, 1e-7) << h;
+  }
+}
+
+TEST(ShapeFormFactor, ASphereWithOneInItIsClosed) {
+  const SphereShape outer{{0, 0, 0}, 2, true}, inner{{0.3, -0.2, 0.5}, 0.7};
+  EXPECT_NEAR(factor(inner, outer), 1, 1e-9);
+  EXPECT_NEAR(factor(outer, inner), 0.7 * 0.7 / 4, 1e-9);
+}
+
 TEST(ShapeFormFactor, WhatIsNotKnownIsSaid) {
-  const CylinderShape inside{{0, 0, 0}, {0, 0, 1}, 1, 2, true};
-  const Result<FormFactor> self = shape_form_factor(inside, inside, {});
-  ASSERT_FALSE(self);
-  EXPECT_EQ(self.error().code, ErrorCode::kBadInput);
+  const CylinderShape inside{{0, 0, 0}, {0, 0, 1}, 1, 2, true}, other{{0, 0, 0}, {0, 0, 1}, 3, 2, true};
+  const Result<FormFactor> two = shape_form_factor(inside, other, {});
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().code, ErrorCode::kBadInput);
   EXPECT_FALSE(shape_form_factor(inside, PointShape{{0, 0, 0}, {0, 0, 1}}, {}));
 }
 

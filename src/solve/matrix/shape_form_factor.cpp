@@ -311,8 +311,15 @@ Result<FormFactor> shape_form_factor(const Shape& from, const Shape& to, std::sp
   const auto *first = std::get_if<Polygon>(&from), *second = std::get_if<Polygon>(&to);
   if (first && second) return polygon_form_factor(*first, *second, occluders, limits);
   if (!occluders.empty()) return unknown("occluders are known between points and polygons only");
-  if (is_cylinder_inside(from) && is_cylinder_inside(to))
-    return unknown("what the inside of a cylinder sends to itself depends on what stands in it");
+  if (is_cylinder_inside(from) && is_cylinder_inside(to)) {
+    const auto &tube = std::get<CylinderShape>(from), &other = std::get<CylinderShape>(to);
+    if (tube.base != other.base || tube.axis != other.axis || tube.radius != other.radius ||
+        tube.height != other.height)
+      return unknown("the insides of two cylinders");
+    // An empty tube: what does not leave by its ends (the discs' F, Howell C-41, by reciprocity).
+    const double x = tube.height / (2 * tube.radius);
+    return FormFactor{1 + x - std::sqrt(1 + x * x), 1e-15 * (1 + x), FormFactorMethod::kShape};
+  }
   // The other way round, by A1 F12 = A2 F21, where that has no horizons in it or is the only one known.
   if (is_cylinder_inside(to) || (is_convex_body(from) && !is_convex_body(to))) {
     const Result<FormFactor> back = mean_over(to, from, limits);

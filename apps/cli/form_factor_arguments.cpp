@@ -16,8 +16,12 @@ constexpr const char* kExamples =
     "  goldthread formfactors hall.json --method rays --npz hall.npz --enforce-closure";
 
 using Method = FormFactorOptions::Method;
-const std::map<std::string, Method> kMethods = {
-    {"auto", Method::kAuto}, {"exact", Method::kExact}, {"rays", Method::kRays}};
+const std::map<std::string, Method> kMethods = {{"auto", Method::kAuto},
+                                                {"exact", Method::kExact},
+                                                {"rays", Method::kRays},
+                                                {"hemicube", Method::kHemicube},
+                                                {"cubic-tetrahedron", Method::kCubicTetrahedron},
+                                                {"single-plane", Method::kSinglePlane}};
 
 }  // namespace
 
@@ -26,8 +30,10 @@ void add_form_factors(CLI::App& app, FormFactorCommand& command) {
   CLI::App* verb = app.add_subcommand(kVerb, "form factors of pairs of shapes and of whole models");
   verb->add_option("CASES", options.input, "pairs or models as .json, or View3D's .vs3")->required();
   verb->add_option("--case", options.only, "only the case of this id")->type_name("ID");
-  verb->add_option("--method", command.method,
-                   "of models: exact, rays, or auto: exact for up to 100 polygons (auto)")
+  verb->add_option(
+          "--method", command.method,
+          "of models: exact, rays, hemicube, cubic-tetrahedron, single-plane, or auto: exact for up to 100 "
+          "polygons, else rays (auto)")
       ->type_name("M")
       ->check(CLI::IsMember(kMethods).description(""));
   verb->add_option("--tolerance", command.tolerance,
@@ -37,8 +43,14 @@ void add_form_factors(CLI::App& app, FormFactorCommand& command) {
   verb->add_option("--rays", options.rays, "a pair, with --method rays, 1 to 64 (16)")
       ->type_name("N")
       ->check(CLI::Range(1, 64).description(""));
+  verb->add_option("--resolution", options.resolution, "cells along a hemicube and its kin (64)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096).description(""));
+  verb->add_option("--samples", options.samples_across, "rays across each of these cells, 1 to 16 (2)")
+      ->type_name("K")
+      ->check(CLI::Range(1, 16).description(""));
   verb->add_flag("--enforce-reciprocity", options.enforce_reciprocity,
-                 "make A1 F12 = A2 F21; every method here does so by itself");
+                 "A1 F12 = A2 F21 for hemicubes and their kin, by the mean; the others do so by themselves");
   verb->add_flag("--enforce-closure", options.enforce_closure,
                  "scale until every row and its surroundings sum to one");
   verb->add_option("--json", options.json_file, "write pairs, row sums and errors as JSON")

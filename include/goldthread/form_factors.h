@@ -12,20 +12,25 @@ namespace goldthread {
 
 struct FormFactorOptions {
   enum class Method {
-    kAuto,   ///< exact for models of up to 100 polygons, else rays
-    kExact,  ///< contour integrals; past occluders, the exact visible part integrated to the tolerance
-    kRays,   ///< closed forms for what is unoccluded, rays for the share that is seen
+    kAuto,      ///< exact for models of up to 100 polygons, else rays
+    kExact,     ///< contour integrals; past occluders, the exact visible part integrated to the tolerance
+    kRays,      ///< closed forms for what is unoccluded, rays for the share that is seen
+    kHemicube,  ///< classical item buffers at each polygon's points
+    kCubicTetrahedron,  ///< the same on three faces in the place of five
+    kSinglePlane,       ///< the same on one plane, which misses the horizon
   };
   std::string input;                ///< .json or .vs3
   std::string only;                 ///< this case alone; empty for all
   Method method = Method::kAuto;    ///< of models; pairs are always exact
   std::optional<double> tolerance;  ///< relative, past occluders: 1e-5 for pairs, 1e-4 in models
   uint32_t rays = 16;               ///< a pair, with kRays
+  uint32_t resolution = 64;         ///< cells along an item buffer
+  uint32_t samples_across = 2;      ///< of each cell: 1 through its middle, k for k x k against aliasing
   uint64_t seed = 0;
-  int threads = 0;                             ///< 0: all
-  std::optional<uint64_t> max_memory;          ///< bytes for a matrix
-  bool enforce_reciprocity = false;            ///< every method here keeps it by itself: nothing to do
-  bool enforce_closure = false;                ///< scale until rows and their surroundings sum to one
+  int threads = 0;                     ///< 0: all
+  std::optional<uint64_t> max_memory;  ///< bytes for a matrix
+  bool enforce_reciprocity = false;    ///< item buffers: the mean of both directions; others keep it anyway
+  bool enforce_closure = false;        ///< scale until rows and their surroundings sum to one
   std::string json_file, npz_file, text_file;  ///< results; empty for none
 };
 

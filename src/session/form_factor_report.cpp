@@ -22,14 +22,15 @@ struct Entry {
 // F row by row, both directions, ascending.
 std::vector<std::vector<Entry>> rows_of(const FormFactorMatrix& matrix) {
   std::vector<std::vector<Entry>> rows(matrix.size());
-  const auto add = [&](uint32_t from, uint32_t to, uint64_t k) {
-    rows[from].push_back({to, std::min(1.0, matrix.exchange[k] / matrix.areas[from]),
+  const auto add = [&](uint32_t from, uint32_t to, uint64_t k, double exchange) {
+    if (exchange <= 0) return;
+    rows[from].push_back({to, std::min(1.0, exchange / matrix.areas[from]),
                           static_cast<double>(matrix.error[k]) / matrix.areas[from], matrix.method[k]});
   };
   for (uint32_t i = 0; i < matrix.size(); ++i)
     for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
-      add(i, matrix.column[k], k);
-      if (matrix.column[k] != i) add(matrix.column[k], i, k);
+      add(i, matrix.column[k], k, matrix.exchange[k]);
+      if (matrix.column[k] != i) add(matrix.column[k], i, k, matrix.reverse_exchange(k));
     }
   for (auto& row : rows)
     std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
@@ -92,7 +93,7 @@ nlohmann::json summary(const ModelAnswer& model) {
   j["back"] = model.matrix.back;
   j["closure"] = {
       {"worst_surface", model.names[check.row]}, {"off", check.off}, {"tolerance", check.allowed}};
-  j["reciprocity_error"] = 0.0;  // one number stands for both directions
+  j["reciprocity_error"] = model.matrix.reciprocity_error();
   j["entries"] = model.matrix.exchange.size();
   j["rays"] = model.matrix.rays;
   j["seconds"] = model.seconds;
@@ -137,7 +138,7 @@ ClosureCheck check_closure(const FormFactorMatrix& matrix) {
     const double share =
         static_cast<double>(matrix.share_error) * 2 *
         std::sqrt(std::max(0.0, around * (1 - around)) + static_cast<double>(matrix.share_error));
-    const double allowed = bounds[i] + share;
+    const double allowed = bounds[i] + share + 1e-12;  // and rounding
     if (off / allowed > most) worst = {i, off, allowed};
     most = std::max(most, off / allowed);
   }

@@ -120,9 +120,20 @@ class FormFactors {
       case FormFactorOptions::Method::kRays:
         out.method = MatrixMethod::kRays;
         break;
+      case FormFactorOptions::Method::kHemicube:
+        out.method = MatrixMethod::kHemicube;
+        break;
+      case FormFactorOptions::Method::kCubicTetrahedron:
+        out.method = MatrixMethod::kCubicTetrahedron;
+        break;
+      case FormFactorOptions::Method::kSinglePlane:
+        out.method = MatrixMethod::kSinglePlane;
+        break;
     }
     if (options_.tolerance) out.limits.relative = *options_.tolerance;
     out.rays = options_.rays;
+    out.resolution = options_.resolution;
+    out.samples_across = options_.samples_across;
     out.seed = static_cast<uint32_t>(options_.seed);
     out.max_memory = options_.max_memory.value_or(0);
     return out;
@@ -164,6 +175,7 @@ class FormFactors {
       answer.names.clear();
       for (const uint32_t surface : kept) answer.names.push_back(model.names[surface]);
     }
+    if (options_.enforce_reciprocity) enforce_reciprocity(answer.matrix);
     if (options_.enforce_closure) {
       Result<double> change = enforce_closure(answer.matrix);
       if (!change) {

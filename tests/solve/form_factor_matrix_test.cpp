@@ -2,6 +2,7 @@
 #include "solve/matrix/form_factor_matrix.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <filesystem>
 #include <fstream>
@@ -39,7 +40,8 @@ FormFactorMatrix built(const PatchModel& model, const MatrixOptions& options) {
 double form_factor(const FormFactorMatrix& matrix, uint32_t from, uint32_t to) {
   const auto [row, column] = std::minmax(from, to);
   for (uint64_t k = matrix.first[row]; k < matrix.first[row + 1]; ++k)
-    if (matrix.column[k] == column) return matrix.exchange[k] / matrix.areas[from];
+    if (matrix.column[k] == column)
+      return (row == from ? matrix.exchange[k] : matrix.reverse_exchange(k)) / matrix.areas[from];
   return 0;
 }
 
@@ -96,7 +98,11 @@ TEST(FormFactorMatrix, RowsAndTheirSurroundingsSumToOne) {
 TEST(FormFactorMatrix, TheSameForAnyNumberOfThreadsAndTwice) {
   MatrixOptions options;
   options.method = MatrixMethod::kRays;
-  const FormFactorMatrix one = built(room(3), options), two = built(room(3), options);
+  const FormFactorMatrix two = built(room(3), options);
+  const FormFactorMatrix one = [&] {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+    return built(room(3), options);
+  }();
   EXPECT_EQ(one.exchange, two.exchange);
   EXPECT_EQ(one.column, two.column);
   options.seed = 1;
@@ -119,6 +125,47 @@ TEST(FormFactorMatrix, StopsAtTheMemoryLimitAndWhenCancelled) {
   const Result<FormFactorMatrix> stopped = build_form_factor_matrix(room(5), options, stop);
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+}
+
+TEST(FormFactorMatrix, HemicubesAgreeWithTheExactMatrixWithinWhatTheySay) {
+  PatchModel model = room(2);
+  model.occluders = {rectangle({0.3, 0.2, 0.4}, {0.5, 0, 0.1}, {0, 0.4, 0})};
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix exact = built(model, options);
+  for (const MatrixMethod method : {MatrixMethod::kHemicube, MatrixMethod::kCubicTetrahedron}) {
+    options.method = method;
+    FormFactorMatrix matrix = built(model, options);
+    ASSERT_EQ(matrix.reverse.size(), matrix.exchange.size());
+    const std::vector<double> sums = matrix.row_sums();
+    double squares = 0;
+    for (uint32_t i = 0; i < matrix.size(); ++i) {
+      // A hemisphere is all given away, the six points' as well.
+      EXPECT_NEAR(sums[i] + static_cast<double>(matrix.environment[i] + matrix.back[i]), 1, 1e-6);
+      for (uint32_t j = 0; j < matrix.size(); ++j) {
+        const double off = form_factor(matrix, i, j) - form_factor(exact, i, j);
+        squares += off * off / static_cast<double>(matrix.size() * matrix.size());
+      }
+    }
+    EXPECT_LT(std::sqrt(squares), 0.004);  // of a mean of 1/24: six points stand for a patch
+    EXPECT_GT(matrix.reciprocity_error(), 1e-6);
+    enforce_reciprocity(matrix);
+    EXPECT_EQ(matrix.reciprocity_error(), 0);
+    for (uint32_t i = 0; i < matrix.size(); ++i)
+      for (uint32_t j = 0; j < i; ++j)
+        EXPECT_NEAR(form_factor(matrix, i, j) * matrix.areas[i], form_factor(matrix, j, i) * matrix.areas[j],
+                    1e-15);
+  }
+}
+
+TEST(FormFactorMatrix, ASinglePlaneMissesTheHorizon) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kSinglePlane;
+  const FormFactorMatrix matrix = built(room(1), options);
+  // In a closed room all that is missing is what the plane does not cover: of half width w at height 1.
+  const double w = options.plane_half_width, s = std::sqrt(1 + w * w);
+  const double covered = 4 / 3.14159265358979323846 * (w / s) * std::atan(w / s);
+  for (size_t i = 0; i < matrix.size(); ++i) EXPECT_NEAR(matrix.environment[i], 1 - covered, 1e-5);
 }
 
 TEST(FormFactorMatrix, ProgressGrowsToOne) {
@@ -181,6 +228,36 @@ TEST(FoldSurfaces, PartsThatAreCombinedAreOne) {
       if (i == j) continue;
       EXPECT_NEAR(form_factor(folded, i, j), form_factor(whole, i, j), 1e-10);
     }
+}
+
+TEST(FoldSurfaces, WhatACombinedSurfaceSendsToItselfIsItsOwn) {
+  // Floor and ceiling as one.
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix faces = built(room(1), options);
+  SurfaceRoles roles;
+  roles.base.assign(6, SurfaceRoles::kNone);
+  roles.combined.assign(6, SurfaceRoles::kNone);
+  roles.combined[1] = 0;
+  std::vector<uint32_t> kept;
+  const FormFactorMatrix folded = fold_surfaces(faces, roles, kept);
+  ASSERT_EQ(folded.size(), 5u);
+  for (const double sum : folded.row_sums()) EXPECT_NEAR(sum, 1, 1e-10);
+  EXPECT_NEAR(form_factor(folded, 0, 0), form_factor(faces, 0, 1), 1e-12);
+}
+
+TEST(Closure, RowsFoundOneByOneAreScaledOneByOne) {
+  MatrixOptions options;
+  options.method = MatrixMethod::kHemicube;
+  options.resolution = 8;
+  PatchModel model = room(2);
+  model.patches.pop_back();
+  FormFactorMatrix matrix = built(model, options);
+  matrix.exchange[3] *= 1.5;  // as if a row had gone wrong
+  ASSERT_TRUE(enforce_closure(matrix));
+  const std::vector<double> sums = matrix.row_sums();
+  for (size_t i = 0; i < matrix.size(); ++i)
+    EXPECT_NEAR(sums[i] + static_cast<double>(matrix.environment[i] + matrix.back[i]), 1, 1e-6);
 }
 
 TEST(FormFactorMatrix, SharedRooms) {

@@ -28,7 +28,7 @@ std::vector<std::vector<Share>> shares_of(const SurfaceRoles& roles, size_t coun
 }
 
 struct Entry {
-  double exchange = 0, error = 0;
+  double exchange = 0, reverse = 0, error = 0;
   FormFactorMethod method = FormFactorMethod::kFacesAway;
 };
 
@@ -65,10 +65,15 @@ FormFactorMatrix fold_surfaces(const FormFactorMatrix& matrix, const SurfaceRole
     for (uint64_t k = matrix.first[p]; k < matrix.first[p + 1]; ++k)
       for (const Share& a : shares[p])
         for (const Share& b : shares[matrix.column[k]]) {
-          const auto place = std::minmax(number[a.surface], number[b.surface]);
-          Entry& entry = entries[place];
-          entry.exchange += a.weight * b.weight * matrix.exchange[k];
-          entry.error += static_cast<double>(matrix.error[k]);
+          const uint32_t from = number[a.surface], to = number[b.surface];
+          const double weight = a.weight * b.weight;
+          double there = weight * matrix.exchange[k], back = weight * matrix.reverse_exchange(k);
+          if (from > to) std::swap(there, back);
+          // Within one surface both directions are its own.
+          Entry& entry = entries[{std::min(from, to), std::max(from, to)}];
+          entry.exchange += from == to ? there + back : there;
+          entry.reverse += from == to ? there + back : back;
+          entry.error += static_cast<double>(matrix.error[k]) * (from == to ? 2 : 1);
           entry.method = std::max(entry.method, matrix.method[k]);
         }
   out.first.assign(1, 0);
@@ -77,6 +82,7 @@ FormFactorMatrix fold_surfaces(const FormFactorMatrix& matrix, const SurfaceRole
     for (; entry != entries.end() && entry->first.first == row; ++entry) {
       out.column.push_back(entry->first.second);
       out.exchange.push_back(std::max(0.0, entry->second.exchange));
+      if (!matrix.reverse.empty()) out.reverse.push_back(std::max(0.0, entry->second.reverse));
       out.error.push_back(static_cast<float>(entry->second.error));
       out.method.push_back(entry->second.method);
     }

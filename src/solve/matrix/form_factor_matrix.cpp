@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "base/rng.h"
 #include "math/form_factor.h"
 #include "math/polygon_exchange.h"
+#include "visibility/hemicube.h"
 #include "visibility/ray_caster.h"
 
 namespace goldthread {
@@ -29,6 +31,7 @@ using Row = std::vector<Pair>;
 // Points of Strang's 3-point rule, one nearer to each corner: exact to degree 2.
 constexpr double kNear = 2.0 / 3, kBeside = 1.0 / 6;
 constexpr size_t kMostRays = 64;
+constexpr uint32_t kOccluder = 0xffffffffu;
 
 // A patch as rays need it: single precision, triangles for sampling, points for quadrature.
 struct TracedPatch {
@@ -82,6 +85,29 @@ RayCaster build_caster(const PatchModel& model) {
   return {positions, triangles};
 }
 
+std::vector<uint32_t> patches_of_triangles(const PatchModel& model) {
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < model.patches.size(); ++i) out.insert(out.end(), model.patches[i].size() - 2, i);
+  for (const Polygon& polygon : model.occluders) out.insert(out.end(), polygon.size() - 2, kOccluder);
+  return out;
+}
+
+DirectionGrid grid_of(const MatrixOptions& options) {
+  switch (options.method) {
+    case MatrixMethod::kCubicTetrahedron:
+      return DirectionGrid::cubic_tetrahedron(options.resolution);
+    case MatrixMethod::kSinglePlane:
+      return DirectionGrid::single_plane(options.resolution, options.plane_half_width);
+    default:
+      return DirectionGrid::hemicube(options.resolution);
+  }
+}
+
+bool scans_rows(MatrixMethod method) {
+  return method == MatrixMethod::kHemicube || method == MatrixMethod::kCubicTetrahedron ||
+         method == MatrixMethod::kSinglePlane;
+}
+
 bool none_above(const TracedPatch& patch, const TracedPatch& plane, float tolerance) {
   return std::none_of(patch.corners.begin(), patch.corners.end(),
                       [&](const vec3& p) { return dot(plane.normal, p - plane.centre) > tolerance; });
@@ -116,6 +142,39 @@ class PairTracer {
     if (open * share <= 0) return std::nullopt;
     return Pair{j, FormFactorMethod::kRays, static_cast<float>(open * 2 * deviation + rule_error),
                 open * share};
+  }
+
+  // The whole row of i at once, both ways' pairs; what each point sees, averaged.
+  Row scan_row(uint32_t i, const DirectionGrid& grid, std::span<const uint32_t> patch_of_triangle,
+               float& environment, float& back, uint64_t& rays) const {
+    const TracedPatch& patch = patches_[i];
+    std::map<uint32_t, std::pair<double, double>> shares;  // patch: front, and its error
+    double missed = 0, behind = 0;
+    for (size_t k = 0; k < patch.points.size(); ++k) {
+      ScanOptions scan;
+      scan.samples_across = options_.samples_across;
+      scan.seed = hash(hash(i, static_cast<uint32_t>(k)), options_.seed);
+      scan.turn = 2 * kPi * unit_float(hash(scan.seed, 1));
+      const HemisphereScan seen = scan_hemisphere(caster_, grid, patch.points[k], patch.normal, scan);
+      const auto weight = static_cast<double>(patch.weights[k] / patch.area);
+      rays += seen.rays;
+      missed += weight * (seen.environment + seen.missing);
+      for (const SeenShare& share : seen.seen) {
+        const uint32_t j = patch_of_triangle[share.triangle];
+        behind += weight * (share.back + (j == kOccluder ? share.front : 0));
+        if (j == kOccluder || share.front <= 0) continue;
+        auto& [front, error] = shares[j];
+        front += weight * share.front;
+        error += weight * share.error;
+      }
+    }
+    environment = static_cast<float>(missed);
+    back = static_cast<float>(behind);
+    Row row;
+    for (const auto& [j, share] : shares)
+      row.push_back({j, FormFactorMethod::kHemicube, static_cast<float>(share.second * double(patch.area)),
+                     share.first * static_cast<double>(patch.area)});
+    return row;
   }
 
   // Shares of i's cosine-distributed rays that meet nothing and that meet a back.
@@ -210,6 +269,10 @@ class MatrixBuilder {
   MatrixBuilder(const PatchModel& model, const MatrixOptions& options, const CancelToken& cancel,
                 const std::function<void(double)>& progress)
       : model_(model), options_(options), cancel_(cancel), progress_(progress), tracer_(model, options) {
+    if (scans_rows(options.method)) {
+      grid_.emplace(grid_of(options));
+      patch_of_triangle_ = patches_of_triangles(model);
+    }
     exact_ = options.method == MatrixMethod::kExact ||
              (options.method == MatrixMethod::kAuto &&
               model.patches.size() + model.occluders.size() <= kMostExact);
@@ -230,8 +293,16 @@ class MatrixBuilder {
     std::vector<Row> rows(n);
     parallel_for(n, [&](size_t i) {
       if (stopped()) return;
-      rows[i] = row(static_cast<uint32_t>(i));
-      tracer_.look_around(static_cast<uint32_t>(i), matrix.environment[i], matrix.back[i]);
+      const auto number = static_cast<uint32_t>(i);
+      if (grid_) {
+        uint64_t rays = 0;
+        rows[i] =
+            tracer_.scan_row(number, *grid_, patch_of_triangle_, matrix.environment[i], matrix.back[i], rays);
+        rays_ += rays;
+      } else {
+        rows[i] = row(number);
+        tracer_.look_around(number, matrix.environment[i], matrix.back[i]);
+      }
       done(rows[i], i);
     });
     if (cancel_.cancelled()) return Error{ErrorCode::kCancelled, "stopped", {}, {}, {}};
@@ -241,8 +312,13 @@ class MatrixBuilder {
                    {},
                    {},
                    "raise --max-memory, or give fewer patches"};
-    matrix.share_error = 1 / std::sqrt(static_cast<float>(std::max(1u, options_.environment_rays)));
-    matrix.rays = rays_ + n * options_.environment_rays;
+    matrix.rays = rays_;
+    if (grid_) {
+      join_directions(rows, matrix);
+    } else {
+      matrix.share_error = 1 / std::sqrt(static_cast<float>(std::max(1u, options_.environment_rays)));
+      matrix.rays += n * options_.environment_rays;
+    }
     put_together(rows, matrix);
     return matrix;
   }
@@ -282,6 +358,38 @@ class MatrixBuilder {
     if (progress_) progress_(std::min(1.0, done_));
   }
 
+  // Rows that know both directions: what is left of the diagonal becomes the reverse of what is right of it.
+  static void join_directions(std::vector<Row>& rows, FormFactorMatrix& matrix) {
+    std::vector<Row> from_below(rows.size());  // row j: what higher ones send to it
+    for (uint32_t i = 0; i < rows.size(); ++i) {
+      for (const Pair& pair : rows[i])
+        if (pair.column < i) from_below[pair.column].push_back({i, pair.method, pair.error, pair.exchange});
+      std::erase_if(rows[i], [i](const Pair& pair) { return pair.column <= i; });  // nothing sees itself
+    }
+    for (uint32_t i = 0; i < rows.size(); ++i) {
+      Row joined;
+      auto right = rows[i].begin();
+      const auto take_right = [&](uint32_t before) {
+        for (; right != rows[i].end() && right->column < before; ++right) {
+          joined.push_back(*right);
+          matrix.reverse.push_back(0);
+        }
+      };
+      for (const Pair& back : from_below[i]) {
+        take_right(back.column);
+        if (right != rows[i].end() && right->column == back.column) {
+          joined.push_back(*right++);
+          joined.back().error = std::max(joined.back().error, back.error);
+        } else {
+          joined.push_back({back.column, back.method, back.error, 0});
+        }
+        matrix.reverse.push_back(back.exchange);
+      }
+      take_right(kOccluder);
+      rows[i] = std::move(joined);
+    }
+  }
+
   static void put_together(std::vector<Row>& rows, FormFactorMatrix& matrix) {
     matrix.first.assign(1, 0);
     uint64_t count = 0;
@@ -308,6 +416,8 @@ class MatrixBuilder {
   PairTracer tracer_;
   bool exact_ = false;
   std::optional<Blockers> blockers_;
+  std::optional<DirectionGrid> grid_;
+  std::vector<uint32_t> patch_of_triangle_;
   std::atomic<uint64_t> bytes_{0}, rays_{0};
   std::atomic<bool> full_{false};
   std::mutex lock_;
@@ -319,7 +429,16 @@ class MatrixBuilder {
 uint64_t FormFactorMatrix::memory_bytes() const {
   return areas.capacity() * sizeof(double) + first.capacity() * sizeof(uint64_t) +
          column.capacity() * (sizeof(uint32_t) + sizeof(double) + sizeof(float) + sizeof(FormFactorMethod)) +
-         (environment.capacity() + back.capacity()) * sizeof(float);
+         (environment.capacity() + back.capacity()) * sizeof(float) + reverse.capacity() * sizeof(double);
+}
+
+double FormFactorMatrix::reciprocity_error() const {
+  double most = 0;
+  for (size_t i = 0; i < size(); ++i)
+    for (uint64_t k = first[i]; k < first[i + 1]; ++k)
+      most =
+          std::max(most, std::abs(exchange[k] - reverse_exchange(k)) / std::min(areas[i], areas[column[k]]));
+  return most;
 }
 
 std::vector<double> FormFactorMatrix::row_sums() const {
@@ -327,7 +446,7 @@ std::vector<double> FormFactorMatrix::row_sums() const {
   for (size_t i = 0; i < size(); ++i)
     for (uint64_t k = first[i]; k < first[i + 1]; ++k) {
       sums[i] += exchange[k] / areas[i];
-      sums[column[k]] += exchange[k] / areas[column[k]];
+      if (column[k] != i) sums[column[k]] += reverse_exchange(k) / areas[column[k]];
     }
   return sums;
 }
@@ -346,7 +465,7 @@ std::vector<double> FormFactorMatrix::row_error_bounds() const {
   for (size_t i = 0; i < size(); ++i)
     for (uint64_t k = first[i]; k < first[i + 1]; ++k) {
       add(i, k);
-      add(column[k], k);
+      if (column[k] != i) add(column[k], k);
     }
   for (size_t i = 0; i < size(); ++i) bounds[i] += std::sqrt(squares[i]);
   return bounds;
@@ -358,42 +477,55 @@ Result<FormFactorMatrix> build_form_factor_matrix(const PatchModel& model, const
   return MatrixBuilder(model, options, cancel, progress).build();
 }
 
+double enforce_reciprocity(FormFactorMatrix& matrix) {
+  const double was = matrix.reciprocity_error();
+  for (size_t k = 0; k < matrix.reverse.size(); ++k)
+    matrix.exchange[k] = 0.5 * (matrix.exchange[k] + matrix.reverse[k]);
+  matrix.reverse.clear();
+  return was;
+}
+
 Result<double> enforce_closure(FormFactorMatrix& matrix) {
   constexpr int kMostRounds = 10000;
   constexpr double kClosed = 1e-12;
   const size_t n = matrix.size();
-  std::vector<double> wanted(n), scale(n, 1.0), sums(n);
+  const bool symmetric = matrix.reverse.empty();
+  std::vector<double> wanted(n), scale(n, 1.0), sums;
   for (size_t i = 0; i < n; ++i)
     wanted[i] = matrix.areas[i] * (1 - static_cast<double>(matrix.environment[i] + matrix.back[i]));
+  const std::vector<double> open = matrix.row_sums();
+  for (size_t i = 0; i < n; ++i)
+    if (wanted[i] > 1e-9 * matrix.areas[i] && open[i] <= 0)
+      return Error{ErrorCode::kBadInput,
+                   "its row is empty and cannot be closed",
+                   {},
+                   fmt::format("surface {}", i + 1),
+                   "leave out --enforce-closure"};
+  // One side of an entry alone, or both: then the root, since the other side is scaled as well.
+  const auto by = [&](size_t i, size_t j) { return symmetric ? scale[i] * scale[j] : scale[i]; };
   double off = 1;
   for (int round = 0; round < kMostRounds && off > kClosed; ++round) {
-    std::fill(sums.begin(), sums.end(), 0.0);
+    sums.assign(n, 0.0);
     for (size_t i = 0; i < n; ++i)
       for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
         const uint32_t j = matrix.column[k];
-        sums[i] += matrix.exchange[k] * scale[i] * scale[j];
-        sums[j] += matrix.exchange[k] * scale[i] * scale[j];
+        sums[i] += matrix.exchange[k] * by(i, j);
+        if (j != i) sums[j] += matrix.reverse_exchange(k) * by(j, i);
       }
     off = 0;
     for (size_t i = 0; i < n; ++i) {
       if (wanted[i] <= 1e-9 * matrix.areas[i]) continue;
-      if (sums[i] <= 0)
-        return Error{ErrorCode::kBadInput,
-                     "its row is empty and cannot be closed",
-                     {},
-                     fmt::format("surface {}", i + 1),
-                     "leave out --enforce-closure"};
       off = std::max(off, std::abs(sums[i] - wanted[i]) / matrix.areas[i]);
-      // The root: the other side of every entry is scaled as well.
-      scale[i] *= std::sqrt(wanted[i] / sums[i]);
+      scale[i] *= symmetric ? std::sqrt(wanted[i] / sums[i]) : wanted[i] / sums[i];
     }
   }
   double change = 0;
   for (size_t i = 0; i < n; ++i)
     for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
-      const double by = scale[i] * scale[matrix.column[k]];
-      matrix.exchange[k] *= by;
-      change = std::max(change, std::abs(by - 1));
+      const uint32_t j = matrix.column[k];
+      matrix.exchange[k] *= by(i, j);
+      if (!symmetric) matrix.reverse[k] *= by(j, i);
+      change = std::max({change, std::abs(by(i, j) - 1), std::abs(by(j, i) - 1)});
     }
   return change;
 }

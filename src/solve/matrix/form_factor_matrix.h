@@ -18,9 +18,12 @@ struct PatchModel {
 };
 
 enum class MatrixMethod {
-  kAuto,   ///< exact up to kMostExact patches and occluders, else rays
-  kExact,  ///< visible_exchange a pair
-  kRays,   ///< closed forms for what is exchanged with nothing in between, rays for the share that is seen
+  kAuto,      ///< exact up to kMostExact patches and occluders, else rays
+  kExact,     ///< visible_exchange a pair
+  kRays,      ///< closed forms for what is exchanged with nothing in between, rays for the share that is seen
+  kHemicube,  ///< rows by hemicubes at a patch's points (Cohen and Greenberg 1985)
+  kCubicTetrahedron,  ///< the same by cubic tetrahedra (Beran-Koehn and Pavicic 1991)
+  kSinglePlane,       ///< the same by single planes (Sillion and Puech 1989), which miss the horizon
 };
 constexpr size_t kMostExact = 100;
 
@@ -28,18 +31,23 @@ struct MatrixOptions {
   MatrixMethod method = MatrixMethod::kAuto;
   CubatureLimits limits{1e-4, 1e-9, 40000};  ///< exact; the absolute one of a patch's area
   uint32_t rays = 16;                        ///< a pair
+  uint32_t resolution = 64;                  ///< of hemicubes and their kin, cells
+  uint32_t samples_across = 2;               ///< of a cell: 1 through its middle, k for k x k jittered rays
+  double plane_half_width = 4;               ///< of single planes, in units of their height
   uint32_t environment_rays = 1024;          ///< a patch
   uint32_t seed = 0;
   uint64_t max_memory = 0;  ///< bytes for the matrix, 0 for no limit
 };
 
-/// Symmetric exchange areas, sparse: of each pair that exchanges anything once, in its lower-numbered row.
+/// Exchange areas, sparse: of each pair that exchanges anything once, in its lower-numbered row.
 struct FormFactorMatrix {
   std::vector<double> areas;     ///< m², a patch
   std::vector<uint64_t> first;   ///< pairs [first[i], first[i + 1]) are patch i's with higher ones
   std::vector<uint32_t> column;  ///< the other patch, ascending in a row
-  std::vector<double> exchange;  ///< A_i F_ij = A_j F_ji, m²
-  std::vector<float> error;      ///< of the same; bound, or two standard errors where rays were cast
+  std::vector<double> exchange;  ///< A_i F_ij, m²; of a patch with itself all of it
+  std::vector<double> reverse;   ///< A_j F_ji, where rows were found one by one; empty when it is the same
+  std::vector<float> error;      ///< of both; bound, or two standard errors where rays were cast; of
+                                 ///< item buffers without what their few points miss of a patch
   std::vector<FormFactorMethod> method;
 
   /// Shares of what leaves a patch that meet nothing, and that meet the back of something: by rays.
@@ -49,7 +57,9 @@ struct FormFactorMatrix {
 
   size_t size() const { return areas.size(); }
   uint64_t memory_bytes() const;
-  std::vector<double> row_sums() const;          ///< of F
+  double reverse_exchange(uint64_t k) const { return reverse.empty() ? exchange[k] : reverse[k]; }
+  double reciprocity_error() const;      ///< largest difference of A_i F_ij and A_j F_ji, by the smaller area
+  std::vector<double> row_sums() const;  ///< of F
   std::vector<double> row_error_bounds() const;  ///< of these sums
 };
 
@@ -58,9 +68,13 @@ Result<FormFactorMatrix> build_form_factor_matrix(const PatchModel& model, const
                                                   const CancelToken& cancel,
                                                   const std::function<void(double)>& progress = {});
 
+/// Gives both directions of every pair their mean. Returns what reciprocity_error was.
+double enforce_reciprocity(FormFactorMatrix& matrix);
+
 /// Scales exchanges so that each row and what its environment and backs take sum to one, both ways alike: the
-/// matrix stays symmetric, and no entry changes its sign (Sinkhorn 1967, symmetric). Returns the largest
-/// relative change of an entry, or an error where no scaling does it: a row without entries.
+/// matrix stays symmetric if it is, and no entry changes its sign (Sinkhorn 1967; rows that were found one by
+/// one are scaled one by one). Returns the largest relative change of an entry, or an error where no scaling
+/// does it: a row without entries.
 Result<double> enforce_closure(FormFactorMatrix& matrix);
 
 }  // namespace goldthread

@@ -85,6 +85,8 @@ const char* method_name(FormFactorMethod method) {
       return "shape";
     case FormFactorMethod::kRays:
       return "rays";
+    case FormFactorMethod::kHemicube:
+      return "hemicube";
   }
   return "";
 }

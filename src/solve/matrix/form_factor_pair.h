@@ -16,6 +16,7 @@ enum class FormFactorMethod : uint8_t {
   kVisibleParts,  ///< from each point the exact visible part of the target, integrated over the source
   kShape,         ///< quadrature of closed forms over a curved shape
   kRays,          ///< sample points and rays
+  kHemicube,      ///< item buffers at sample points
 };
 const char* method_name(FormFactorMethod method);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "goldthread/bake.h"
+#include "goldthread/reference.h"
 
 namespace goldthread::cli {
 
@@ -23,12 +24,17 @@ struct BakeCommand {
   bool quiet = false;
 };
 
+struct ReferenceCommand {
+  ReferenceOptions options;
+  bool quiet = false;
+};
+
 /// Something to print and be done: help or the version.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, ShowText>;
+using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, ReferenceCommand, ShowText>;
 
 /// `arguments` without the program's name. Wrong usage is an Error with code kUsage.
 Result<Command> parse_arguments(std::vector<std::string> arguments);

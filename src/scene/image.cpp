@@ -19,6 +19,7 @@ vec2 placed(const Texture& texture, vec2 uv) {
 /// Column or row of a texel that may lie outside of the picture.
 uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
   const int64_t n = int64_t(size);
+  if (texel >= 0 && texel < n) return uint32_t(texel);  // nearly always, and divisions are slow
   if (wrap == Wrap::kClamp) return uint32_t(std::clamp<int64_t>(texel, 0, n - 1));
   if (wrap == Wrap::kRepeat) return uint32_t(((texel % n) + n) % n);
   const int64_t m = ((texel % (2 * n)) + 2 * n) % (2 * n);

@@ -32,10 +32,14 @@ vec2 to_triangle(double u, double v) {
   return {static_cast<float>(root * (1 - v)), static_cast<float>(root * v)};
 }
 
+bool is_even(const Material& m) {
+  return !m.emission_texture.present() && m.alpha_mode == AlphaMode::kOpaque;
+}
+
 /// Lumens that leave a triangle, its texture averaged over a few dozen points.
 double power_of(const TracedScene& scene, uint32_t triangle) {
   const Material& m = scene.material(triangle);
-  const bool even = !m.emission_texture.present() && m.alpha_mode == AlphaMode::kOpaque;
+  const bool even = is_even(m);
   const uint32_t count = even ? 1 : 64;
   double sum = 0;
   for (uint32_t i = 0; i < count; ++i) {
@@ -48,9 +52,23 @@ double power_of(const TracedScene& scene, uint32_t triangle) {
   return sum / count * sides * static_cast<double>(scene.area(triangle) * kPi);
 }
 
+Emitter emitter_of(const TracedScene& scene, uint32_t triangle) {
+  Emitter e;
+  e.corner = scene.corner(triangle, 0);
+  e.across = scene.corner(triangle, 1) - e.corner;
+  e.up = scene.corner(triangle, 2) - e.corner;
+  e.normal = scene.triangles()[triangle].normal;
+  e.triangle = triangle;
+  e.double_sided = scene.material(triangle).double_sided;
+  e.even = is_even(scene.material(triangle));
+  e.nits = e.even ? scene.emission(triangle, vec2(0)) : vec3(0);
+  return e;
+}
+
 }  // namespace
 
-EmitterTable::EmitterTable(const TracedScene& scene) : density_(scene.triangles().size(), 0.0f) {
+EmitterTable::EmitterTable(const TracedScene& scene)
+    : scene_(scene), density_(scene.triangles().size(), 0.0f) {
   std::map<CornerKey, uint32_t> places;
   std::vector<uint32_t> twins, originals;
   double total = 0;
@@ -65,30 +83,35 @@ EmitterTable::EmitterTable(const TracedScene& scene) : density_(scene.triangles(
     const double power = power_of(scene, t);
     if (!(power > 0) || !std::isfinite(power)) continue;
     total += power;
-    triangles_.push_back(t);
-    up_to_.push_back(total);
+    emitters_.push_back(emitter_of(scene, t));
+    emitters_.back().up_to = total;
   }
   double before = 0;
-  for (size_t i = 0; i < triangles_.size(); ++i) {
-    up_to_[i] = i + 1 < triangles_.size() ? up_to_[i] / total : 1;
-    density_[triangles_[i]] =
-        static_cast<float>((up_to_[i] - before) / static_cast<double>(scene.area(triangles_[i])));
-    before = up_to_[i];
+  for (Emitter& e : emitters_) {
+    e.up_to = &e == &emitters_.back() ? 1 : e.up_to / total;
+    e.density = static_cast<float>((e.up_to - before) / static_cast<double>(scene.area(e.triangle)));
+    density_[e.triangle] = e.density;
+    before = e.up_to;
   }
   for (size_t i = 0; i < twins.size(); ++i) density_[twins[i]] = density_[originals[i]];
-  guide_.resize(triangles_.size());
-  for (uint32_t i = 0, t = 0; i < guide_.size(); ++i) {
-    while (up_to_[t] <= static_cast<double>(i) / static_cast<double>(guide_.size())) ++t;
-    guide_[i] = t;
+  guide_.resize(emitters_.size());
+  for (uint32_t i = 0, e = 0; i < guide_.size(); ++i) {
+    while (emitters_[e].up_to <= static_cast<double>(i) / static_cast<double>(guide_.size())) ++e;
+    guide_[i] = e;
   }
 }
 
-EmitterTable::Point EmitterTable::sample(double u, double v) const {
+const Emitter& EmitterTable::sample(double u, double v, vec2& weights) const {
   size_t i = guide_[static_cast<size_t>(u * static_cast<double>(guide_.size()))];
-  while (up_to_[i] <= u) ++i;
-  const double low = i > 0 ? up_to_[i - 1] : 0;
-  const double inside = std::clamp((u - low) / (up_to_[i] - low), 0.0, 1.0);
-  return {triangles_[i], to_triangle(inside, v), density_[triangles_[i]]};
+  while (emitters_[i].up_to <= u) ++i;
+  const double low = i > 0 ? emitters_[i - 1].up_to : 0;
+  weights = to_triangle(std::clamp((u - low) / (emitters_[i].up_to - low), 0.0, 1.0), v);
+  return emitters_[i];
+}
+
+vec3 EmitterTable::nits(const Emitter& emitter, vec2 weights) const {
+  if (emitter.even) return emitter.nits;
+  return scene_.emission(emitter.triangle, weights) * scene_.coverage(emitter.triangle, weights);
 }
 
 }  // namespace goldthread

@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSliceSeconds = 0.2;  ///< of work between two looks at the clock
-constexpr uint64_t kTimedPaths = 16;   ///< one path in so many has its rays timed
+constexpr uint64_t kTimedPaths = 64;   ///< one path in so many has its rays timed
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

@@ -8,12 +8,15 @@
 namespace goldthread {
 
 vec3 cosine_direction(const vec3& normal, SobolPoint p) {
-  const double u = unit_double(p.u), angle = 2 * 3.14159265358979323846 * unit_double(p.v);
-  const auto radius = static_cast<float>(std::sqrt(u)), height = static_cast<float>(std::sqrt(1 - u));
-  const vec3 across =
-      normalize(std::abs(normal.x) > 0.6f ? vec3(normal.y, -normal.x, 0) : vec3(0, normal.z, -normal.y));
-  const auto x = static_cast<float>(std::cos(angle)), y = static_cast<float>(std::sin(angle));
-  return radius * (x * across + y * cross(normal, across)) + height * normal;
+  const double u = unit_double(p.u);
+  const float angle = 2 * kPi * static_cast<float>(unit_double(p.v));
+  const float radius = std::sqrt(static_cast<float>(u)), height = std::sqrt(static_cast<float>(1 - u));
+  // The frame of Duff et al., Building an Orthonormal Basis, Revisited (2017): no root, no branch.
+  const float sign = std::copysign(1.0f, normal.z);
+  const float a = -1 / (sign + normal.z), b = normal.x * normal.y * a;
+  const vec3 across(1 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+  const vec3 up(b, sign + normal.y * normal.y * a, -normal.y);
+  return radius * (std::cos(angle) * across + std::sin(angle) * up) + height * normal;
 }
 
 vec3 even_direction(SobolPoint p) {
@@ -43,18 +46,18 @@ LightSampler::LightSampler(const TracedScene& scene) : scene_(scene), emitters_(
 
 LightSample LightSampler::sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const {
   LightSample light;
-  const EmitterTable::Point at = emitters_.sample(unit_double(p.u), unit_double(p.v));
-  const vec3 y = scene_.point(at.triangle, at.weights), d = y - origin;
+  vec2 weights;
+  const Emitter& emitter = emitters_.sample(unit_double(p.u), unit_double(p.v), weights);
+  const vec3 y = emitter.corner + weights.x * emitter.across + weights.y * emitter.up, d = y - origin;
   const float squared = dot(d, d), distance = std::sqrt(squared);
-  vec3 front = scene_.triangles()[at.triangle].normal;
-  if (scene_.material(at.triangle).double_sided && dot(front, d) > 0) front = -front;
+  const bool turned = emitter.double_sided && dot(emitter.normal, d) > 0;
+  const vec3 front = turned ? -emitter.normal : emitter.normal;
   const float at_receiver = dot(normal, d) / distance, at_emitter = -dot(front, d) / distance;
   if (!(at_receiver > 0) || !(at_emitter > 0)) return light;
-  const vec3 nits = scene_.emission(at.triangle, at.weights) * scene_.coverage(at.triangle, at.weights);
-  light.density = at.density * squared / at_emitter;
-  light.irradiance = nits * (at_receiver / light.density);
+  light.density = emitter.density * squared / at_emitter;
+  light.irradiance = emitters_.nits(emitter, weights) * (at_receiver / light.density);
   light.shadow.origin = origin;
-  light.shadow.direction = y + scene_.epsilon() * front - origin;
+  light.shadow.direction = d + scene_.epsilon() * front;
   light.shadow.far = 1;
   return light;
 }

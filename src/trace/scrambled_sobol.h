@@ -9,11 +9,10 @@
 namespace goldthread {
 
 inline uint32_t reverse_bits(uint32_t x) {
-  x = (x << 16) | (x >> 16);
-  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
-  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
-  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+  x = __builtin_bswap32(x);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
 /// A permutation in which every bit depends on lower ones only (Laine and Karras 2011, with Burley's
@@ -44,11 +43,12 @@ struct SobolPoint {
 };
 
 /// Point `index` of a scrambled (0,2)-sequence: of its first 2^m points each elementary interval of area 2^-m
-/// holds one. Each `seed` is an independent scrambling, the order of points included.
+/// holds one. Each `seed`, itself a hash, is an independent scrambling, the order of points included.
 inline SobolPoint sobol_point(uint32_t index, uint32_t seed) {
-  const uint32_t shuffled = reverse_bits(scramble_upwards(reverse_bits(index), hash(seed, 1)));
-  return {reverse_bits(scramble_upwards(shuffled, hash(seed, 2))),
-          reverse_bits(scramble_upwards(pascal_product(shuffled), hash(seed, 3)))};
+  const uint32_t second = hash(seed), third = hash(second);
+  const uint32_t shuffled = reverse_bits(scramble_upwards(reverse_bits(index), seed));
+  return {reverse_bits(scramble_upwards(shuffled, second)),
+          reverse_bits(scramble_upwards(pascal_product(shuffled), third))};
 }
 
 /// A fraction as a number in [0, 1).
@@ -66,11 +66,12 @@ class PathSampler {
   SobolPoint next() {
     const uint32_t pair_seed = hash(seed_, ++pair_);
     if (pair_ <= kSobolPairs) return sobol_point(index_, pair_seed);
-    return {hash(index_, pair_seed), hash(index_, pair_seed ^ 0x5851f42du)};
+    const uint32_t u = hash(index_, pair_seed);
+    return {u, hash(u)};
   }
 
  private:
-  static constexpr uint32_t kSobolPairs = 20;
+  static constexpr uint32_t kSobolPairs = 12;
 
   uint32_t index_, seed_;
   uint32_t pair_ = 0;

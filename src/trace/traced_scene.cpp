@@ -17,6 +17,12 @@ vec3 unit_normal(const vec3& a, const vec3& b, const vec3& c) {
   return squared > 0 && std::isfinite(squared) ? vec3(area / std::sqrt(squared)) : vec3(0);
 }
 
+bool is_even(const TracedPart& part) {
+  const Material& m = *part.material;
+  return part.source->colours.empty() && !m.base_colour_texture.present() && !m.metallic_texture.present() &&
+         !m.emission_texture.present();
+}
+
 /// FNV-1a over the bytes of plain values.
 class Fingerprint {
  public:
@@ -90,12 +96,12 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
   const bool mirrored = glm::determinant(mat3(transform)) < 0;
   const auto first_vertex = static_cast<uint32_t>(positions_.size());
   for (const vec3& p : source.positions) positions_.emplace_back(transform * vec4(p, 1));
-  TracedPart part{instance,
-                  primitive,
-                  &source,
-                  &scene_.materials[source.material],
-                  static_cast<uint32_t>(triangles_.size()),
-                  0};
+  TracedPart part;
+  part.instance = instance;
+  part.primitive = primitive;
+  part.source = &source;
+  part.material = &scene_.materials[source.material];
+  part.first_triangle = static_cast<uint32_t>(triangles_.size());
   for (uint32_t t = 0; t < source.triangle_count(); ++t) {
     const uint32_t* index = &source.indices[3 * size_t{t}];
     const UVec3 corners = first_vertex + UVec3(index[0], index[1], index[2]);
@@ -106,6 +112,10 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
   }
   part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
   parts_.push_back(part);
+  if (part.triangle_count == 0 || !is_even(part)) return;
+  parts_.back().reflectance = reflectance(part.first_triangle, vec2(0));
+  parts_.back().emission = emission(part.first_triangle, vec2(0));
+  parts_.back().even = true;
 }
 
 bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
@@ -170,8 +180,8 @@ vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {
   return colour;
 }
 
-vec3 TracedScene::reflectance(uint32_t triangle, vec2 weights) const {
-  const Material& m = material(triangle);
+vec3 TracedScene::reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Material& m = *part.material;
   if (m.unlit) return vec3(0);
   float metallic = m.metallic;
   if (metallic > 0 && m.metallic_texture.present())
@@ -182,8 +192,8 @@ vec3 TracedScene::reflectance(uint32_t triangle, vec2 weights) const {
   return glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
 }
 
-vec3 TracedScene::emission(uint32_t triangle, vec2 weights) const {
-  const Material& m = material(triangle);
+vec3 TracedScene::emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Material& m = *part.material;
   if (m.unlit || !m.emits()) return vec3(0);
   if (!m.emission_texture.present()) return m.emission;
   return m.emission * vec3(sample_texture(m.emission_texture, scene_.images,

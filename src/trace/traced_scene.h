@@ -17,6 +17,9 @@ struct TracedPart {
   const Primitive* source = nullptr;
   const Material* material = nullptr;
   uint32_t first_triangle = 0, triangle_count = 0;
+  bool even = false;    ///< no texture and no vertex colour: the next two hold all over
+  vec3 reflectance{0};  ///< as TracedScene::reflectance
+  vec3 emission{0};     ///< as TracedScene::emission
 };
 
 /// One triangle of the world.
@@ -54,9 +57,15 @@ class TracedScene {
 
   /// Diffuse reflectance at a point: base colour x texture x vertex colour x (1 - metallic), within 0 and
   /// kMaxReflectance; 0 where the material is unlit. Not times coverage.
-  vec3 reflectance(uint32_t triangle, vec2 weights) const;
+  vec3 reflectance(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    return part.even ? part.reflectance : reflectance_at(part, triangle, weights);
+  }
   /// Emitted luminance, nits, not times coverage; 0 where the material is unlit.
-  vec3 emission(uint32_t triangle, vec2 weights) const;
+  vec3 emission(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    return part.even ? part.emission : emission_at(part, triangle, weights);
+  }
   /// Share of a point that is there, 0..1: 0 or 1 for a mask, the clamped alpha for a blend.
   float coverage(uint32_t triangle, vec2 weights) const;
   /// What an unlit material shows: its colour, taken as nits.
@@ -78,6 +87,8 @@ class TracedScene {
 
  private:
   void add(uint32_t instance, uint32_t primitive);
+  vec3 reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
   vec2 texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const;
   template <typename T>

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
+#include <sstream>
 
 namespace goldthread {
 namespace {
@@ -22,12 +23,17 @@ Error bad(const std::string& file, const std::string& place, const std::string& 
 
 Result<Json> read_json(const std::string& file, const char* cure) {
   std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in) return bad(file, "", "cannot be read", "check the name and that it is a file");
+  std::error_code none;
+  if (!in || std::filesystem::is_directory(file, none))
+    return bad(file, "", "cannot be read", "check the name and that it is a file");
+  std::ostringstream text;
+  text << in.rdbuf();
   try {
-    return Json::parse(text);
+    return Json::parse(text.str());
   } catch (const Json::parse_error& error) {
     return bad(file, fmt::format("byte {}", error.byte), "is no JSON", cure);
+  } catch (const Json::exception&) {
+    return bad(file, "", "has a number beyond all numbers", cure);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "trace/traced.h"
 
@@ -80,21 +81,24 @@ Scene scene_of(const Json& c) {
   return scene;
 }
 
-/// Points at random of one part, or of all.
+/// Points at random of one part's front.
 std::vector<Receiver> points_of(const Traced& t, uint32_t part, size_t count) {
-  std::vector<Receiver> points;
-  for (const Receiver& r : random_receivers(*t.traced, 200 * count, 11)) {
-    const PlacedReceiver at = place_receiver(*t.traced, r.point, r.normal);
-    if (at.distance > on_surface_distance(*t.traced)) continue;
-    Ray down;
-    down.origin = r.origin + 1e-3f * r.normal;
-    down.direction = -r.normal;
-    const Meeting met = t.traced->closest(down);
-    if (met.missed() || t.traced->triangles()[met.triangle].part != part) continue;
-    points.push_back(r);
-    if (points.size() == count) break;
+  const TracedPart& p = t.traced->parts()[part];
+  std::vector<double> areas;
+  for (uint32_t i = 0; i < p.triangle_count; ++i)
+    areas.push_back(double(t.traced->area(p.first_triangle + i)));
+  std::mt19937 engine(part);
+  std::discrete_distribution<uint32_t> choose(areas.begin(), areas.end());
+  std::uniform_real_distribution<float> uniform;
+  std::vector<Receiver> points(count);
+  for (Receiver& r : points) {
+    const uint32_t triangle = p.first_triangle + choose(engine);
+    vec2 weights(uniform(engine), uniform(engine));
+    if (weights.x + weights.y > 1) weights = 1.0f - weights;
+    r.point = t.traced->point(triangle, weights);
+    r.normal = t.traced->triangles()[triangle].normal;
+    r.origin = r.point + t.traced->epsilon() * r.normal;
   }
-  EXPECT_EQ(points.size(), count);
   return points;
 }
 
@@ -155,6 +159,60 @@ INSTANTIATE_TEST_SUITE_P(Points, SharedPoints,
                          ::testing::Values("gi-p-direct-parallel", "gi-p-direct-perp", "gi-p-nori-polylum-1",
                                            "gi-p-nori-polylum-2", "gi-p-nori-polylum-3",
                                            "gi-p-sphere-offcentre-light-1"),
+                         [](const auto& info) {
+                           std::string name(info.param + 5);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+/// The mean over a surface: of few samples each at many places, whose spread holds both errors.
+IrradianceValue surface_mean(const Traced& t, uint32_t part) {
+  constexpr size_t kPoints = 512;
+  IrradianceValue mean;
+  dvec3 squares(0);
+  for (const IrradianceSums& sums : t.sums(points_of(t, part, kPoints), 128)) {
+    const dvec3 one = evaluate(sums).mean;
+    mean.mean += one / double(kPoints);
+    squares += one * one / double(kPoints);
+  }
+  mean.standard_error = glm::sqrt((squares - mean.mean * mean.mean) / double(kPoints - 1));
+  return mean;
+}
+
+// Means over surfaces, exact or by another unbiased method with its own standard error.
+class SharedMeans : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SharedMeans, IrradianceOfSurfaces) {
+  const Json c = shared_case(GetParam());
+  if (c.is_null()) GTEST_SKIP() << "the shared accuracy cases are not here";
+  const Traced t(scene_of(c));
+  std::vector<std::string> names;
+  for (const auto& surface : c["surfaces"]) names.push_back(surface["name"]);
+  double squares = 0;
+  int checked = 0;
+  for (const auto& expect : c["expect"]) {
+    if (expect["quantity"] != "mean_irradiance") continue;
+    const auto part = std::find(names.begin(), names.end(), expect["surface"]) - names.begin();
+    const IrradianceValue e = surface_mean(t, static_cast<uint32_t>(part));
+    const double truth = expect["value"][1],
+                 own = expect.contains("std_err") ? expect["std_err"][1].get<double>() : 0,
+                 error = std::hypot(e.standard_error.y, own) + 1e-4 * truth;
+    if (!(error > 0)) {
+      EXPECT_EQ(e.mean.y, truth);
+      continue;
+    }
+    EXPECT_NEAR(e.mean.y, truth, 4 * error) << names[size_t(part)];
+    squares += std::pow((e.mean.y - truth) / error, 2);
+    ++checked;
+  }
+  // All surfaces together: chi-square with so many degrees of freedom, to its mean and four deviations.
+  EXPECT_LT(squares, checked + 4 * std::sqrt(2.0 * checked)) << checked << " surfaces";
+  EXPECT_GT(checked, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rooms, SharedMeans,
+                         ::testing::Values("gi-p-black-box", "gi-p-black-lroom", "gi-p-cube-ceiling",
+                                           "gi-p-globillum-room", "gi-p-lroom-colour", "gi-p-cornell-rgb"),
                          [](const auto& info) {
                            std::string name(info.param + 5);
                            std::replace(name.begin(), name.end(), '-', '_');

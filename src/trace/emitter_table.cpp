@@ -28,8 +28,8 @@ CornerKey key_of(const TracedScene& scene, uint32_t triangle) {
 }
 
 vec2 to_triangle(double u, double v) {
-  const double root = std::sqrt(u);
-  return {static_cast<float>(root * (1 - v)), static_cast<float>(root * v)};
+  const float root = std::sqrt(static_cast<float>(u)), share = static_cast<float>(v);
+  return {root * (1 - share), root * share};
 }
 
 bool is_even(const Material& m) {

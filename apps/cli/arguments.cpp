@@ -17,6 +17,7 @@ constexpr const char* kExamples =
     "  goldthread make cornell-box -o box.glb\n"
     "  goldthread info box.glb\n"
     "  goldthread bake box.glb -o lit.glb -o lit.png\n"
+    "  goldthread reference box.glb --points 1000 --json box.json\n"
     "\n"
     "Exit codes: 0 done, 2 wrong usage, 3 bad input, 4 nothing to bake, 5 out of memory or limit,\n"
     "6 could not write, 130 cancelled. 'goldthread VERB --help' tells a verb's options.";
@@ -27,6 +28,13 @@ constexpr const char* kBakeExamples =
     "  goldthread bake room.glb -o lit.glb --output unlit\n"
     "  goldthread bake house.obj -o lit.glb --sky 10000lux --sun 80000 --sun-elevation 35\n"
     "  goldthread bake car.glb -o car.gold --time-limit 60 --max-memory 2G --report car.json";
+
+constexpr const char* kReferenceExamples =
+    "Examples:\n"
+    "  goldthread reference room.glb --points 1000 --target-error 1% --json room.json\n"
+    "  goldthread reference room.glb --resume room.json --samples 65536 --json room.json\n"
+    "  goldthread reference room.glb --vertices --time-limit 600 --json vertices.json\n"
+    "  goldthread reference house.obj -o house.png --sky 10000lux --sun 80000 --samples 256";
 
 constexpr const char* kMakeExamples =
     "Examples:\n"
@@ -39,6 +47,8 @@ const std::vector<std::pair<std::string, Quality>> kQualities = {{"draft", Quali
                                                                  {"final", Quality::kFinal}};
 const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
     {"vertex-light", OutputMode::kVertexLight}, {"unlit", OutputMode::kUnlit}};
+
+constexpr const char* kSceneFormats = "glTF, GLB, OBJ, PLY, STL, FBX or Collada";
 
 template <typename Value>
 std::vector<std::string> names_of(const std::vector<std::pair<std::string, Value>>& table) {
@@ -74,7 +84,8 @@ Status check_verb(const CLI::App& app, const std::vector<std::string>& arguments
   if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return Nothing{};
   const auto is_it = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
   if (!app.get_subcommands(is_it).empty()) return Nothing{};
-  return usage_error("there is no verb '" + arguments[0] + "'", "choose make, info, bake or formfactors");
+  return usage_error("there is no verb '" + arguments[0] + "'",
+                     "choose make, info, bake, reference or formfactors");
 }
 
 void add_make(CLI::App& app, MakeCommand& make) {
@@ -91,19 +102,31 @@ void add_make(CLI::App& app, MakeCommand& make) {
 
 void add_info(CLI::App& app, InfoCommand& info) {
   CLI::App* verb = app.add_subcommand("info", "tell what is in a scene and what is wrong with it");
-  verb->add_option("SCENE", info.input, "glTF, GLB, OBJ, PLY, STL, FBX or Collada")->required();
+  verb->add_option("SCENE", info.input, kSceneFormats)->required();
   verb->add_option("--json,--report", info.json_file, "write JSON to FILE, - for standard output")
       ->type_name("FILE");
 }
 
-/// Texts of options that become values after parsing.
-struct BakeTexts {
-  std::string quality = "medium", mode = "vertex-light", memory, sky, picture;
-  double time_limit = 0;
+/// Light that is not in the scene, before it is a value.
+struct LightTexts {
+  std::string sky;
   BakeOptions::Sun sun;
 };
 
-void add_bake_light(CLI::App& verb, BakeTexts& texts) {
+/// Texts of options that become values after parsing.
+struct BakeTexts {
+  std::string quality = "medium", mode = "vertex-light", memory, picture;
+  double time_limit = 0;
+  LightTexts light;
+};
+struct ReferenceTexts {
+  std::string points, target_error, picture;
+  uint64_t samples = 0, seed = 0;
+  double time_limit = 0;
+  LightTexts light;
+};
+
+void add_light(CLI::App& verb, LightTexts& texts) {
   const auto group = "Light that is not in the scene";
   verb.add_option("--sky", texts.sky, "even sky: luminance in nits, one number or R,G,B; or 10000lux")
       ->type_name("NITS")
@@ -122,52 +145,120 @@ void add_bake_light(CLI::App& verb, BakeTexts& texts) {
       ->group(group);
 }
 
+constexpr const char* kResults = "Results";
+constexpr const char* kEffort = "Effort";
+
+void add_picture(CLI::App& verb, double& exposure, std::string& size, std::string& report_file) {
+  verb.add_option("--exposure", exposure, "multiplies light before tone mapping, 0 chooses (0)")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 1e12).description(""))
+      ->group(kResults);
+  verb.add_option("--picture-size", size, "pixels, as 960x540 or 960 (960)")
+      ->type_name("WxH")
+      ->group(kResults);
+  verb.add_option("--report", report_file, "write the report as JSON")->type_name("FILE")->group(kResults);
+}
+
+void add_run(CLI::App& verb, double& time_limit, int& threads, bool& quiet) {
+  verb.add_option("--time-limit", time_limit, "stop after so many seconds with what there is")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber.description(""))
+      ->group(kEffort);
+  verb.add_option("--threads", threads, "0 for all (0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""))
+      ->group(kEffort);
+  verb.add_flag("--quiet", quiet, "print nothing but errors")->group(kEffort);
+}
+
 void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
-  const auto group = "Results";
   verb.add_option("-o", options.outputs,
                   "result, more than once: .glb .gltf scene, .gold solution, .png .exr picture")
       ->allow_extra_args(false)
       ->type_name("FILE")
-      ->group(group);
+      ->group(kResults);
   verb.add_option("--output", texts.mode, "how the scene carries light: vertex-light or unlit (vertex-light)")
       ->type_name("MODE")
       ->check(CLI::IsMember(names_of(kOutputModes)).description(""))
-      ->group(group);
-  verb.add_option("--exposure", options.exposure, "multiplies light before tone mapping, 0 chooses (0)")
-      ->type_name("X")
-      ->check(CLI::Range(0.0, 1e12).description(""))
-      ->group(group);
-  verb.add_option("--picture-size", texts.picture, "pixels, as 960x540 or 960 (960)")
-      ->type_name("WxH")
-      ->group(group);
-  verb.add_option("--report", options.report_file, "write the report as JSON")
-      ->type_name("FILE")
-      ->group(group);
+      ->group(kResults);
+  add_picture(verb, options.exposure, texts.picture, options.report_file);
 }
 
 void add_bake_effort(CLI::App& verb, BakeCommand& bake, BakeTexts& texts) {
-  const auto group = "Effort";
   verb.add_option("--quality", texts.quality, "draft, medium, high or final (medium)")
       ->type_name("Q")
       ->check(CLI::IsMember(names_of(kQualities)).description(""))
-      ->group(group);
-  verb.add_option("--time-limit", texts.time_limit, "stop after so many seconds with what there is")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber.description(""))
-      ->group(group);
+      ->group(kEffort);
+  add_run(verb, texts.time_limit, bake.options.threads, bake.quiet);
   verb.add_option("--max-memory", texts.memory, "stay within, as 2G or 500M")
       ->type_name("BYTES")
-      ->group(group);
-  verb.add_option("--threads", bake.options.threads, "0 for all (0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""))
-      ->group(group);
+      ->group(kEffort);
   verb.add_option("--seed", bake.options.seed, "another choice of random samples (0)")
       ->type_name("N")
-      ->group(group);
+      ->group(kEffort);
   verb.add_flag("--fix-normals", bake.options.fix_normals, "turn shells that are wound inside out")
+      ->group(kEffort);
+}
+
+void add_reference(CLI::App& app, ReferenceCommand& reference, ReferenceTexts& texts) {
+  ReferenceOptions& options = reference.options;
+  CLI::App* verb = app.add_subcommand("reference", "measure light by unbiased path tracing");
+  verb->add_option("SCENE", options.input, kSceneFormats)->required();
+  const auto group = "What to measure";
+  verb->add_option("--points", texts.points,
+                   "irradiance at N random points, or at those of a JSON list of {point, normal}")
+      ->type_name("N|FILE")
       ->group(group);
-  verb.add_flag("--quiet", bake.quiet, "print nothing but errors")->group(group);
+  verb->add_flag("--vertices", options.vertices, "irradiance at all vertices")->group(group);
+  verb->add_option("--resume", options.resume_file, "more samples for the points of an earlier --json FILE")
+      ->type_name("FILE")
+      ->group(group);
+  verb->add_option("-o", options.pictures, "a picture, .png or .exr; more than once")
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->group(group);
+  verb->add_option("--json", options.json_file, "write points, irradiance and standard errors, - to print")
+      ->type_name("FILE")
+      ->group(kResults);
+  add_picture(*verb, options.exposure, texts.picture, options.report_file);
+  verb->add_option("--samples", texts.samples, "stop after so many a point or pixel (1024 or 64)")
+      ->type_name("N")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 36).description(""))
+      ->group(kEffort);
+  verb->add_option("--target-error", texts.target_error,
+                   "stop at this mean of standard error over irradiance, as 0.01 or 1%")
+      ->type_name("E")
+      ->group(kEffort);
+  add_run(*verb, texts.time_limit, options.threads, reference.quiet);
+  verb->add_option("--seed", texts.seed, "another choice of random samples (0)")
+      ->type_name("N")
+      ->group(kEffort);
+  add_light(*verb, texts.light);
+  verb->footer(kReferenceExamples);
+}
+
+Status finish_light(const CLI::App& verb, const LightTexts& texts, std::optional<std::array<float, 3>>& sky,
+                    std::optional<BakeOptions::Sun>& sun) {
+  if (verb.count("--sky") > 0) {
+    sky = parse_sky(texts.sky);
+    if (!sky) {
+      return usage_error("--sky: '" + texts.sky + "' is no luminance",
+                         "write nits as 2000 or 2000,2200,2600, or lux as 10000lux");
+    }
+  }
+  if (verb.count("--sun") > 0) sun = texts.sun;
+  if (!sun && (verb.count("--sun-elevation") > 0 || verb.count("--sun-azimuth") > 0))
+    return usage_error("the sun has a place but does not shine", "add --sun");
+  return Nothing{};
+}
+
+Status finish_picture(const CLI::App& verb, const std::string& text, int& width, int& height) {
+  if (verb.count("--picture-size") == 0) return Nothing{};
+  const auto size = parse_picture_size(text);
+  if (!size) return usage_error("--picture-size: '" + text + "' is no size", "write 960x540 or 960");
+  width = size->width;
+  height = size->height;
+  return Nothing{};
 }
 
 /// Moves what was parsed as text into `options`.
@@ -181,24 +272,36 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.max_memory)
       return usage_error("--max-memory: '" + texts.memory + "' is no size", "write 2G, 500M or bytes");
   }
-  if (verb.count("--sky") > 0) {
-    options.sky = parse_sky(texts.sky);
-    if (!options.sky) {
-      return usage_error("--sky: '" + texts.sky + "' is no luminance",
-                         "write nits as 2000 or 2000,2200,2600, or lux as 10000lux");
-    }
+  if (const Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
+}
+
+/// `--points` is a number of points where it is one, else the name of a file.
+Status finish_points(const std::string& text, ReferenceOptions& options) {
+  if (!is_number(text)) {
+    options.points_file = text;
+    return Nothing{};
   }
-  if (verb.count("--sun") > 0) options.sun = texts.sun;
-  if (!options.sun && (verb.count("--sun-elevation") > 0 || verb.count("--sun-azimuth") > 0))
-    return usage_error("the sun has a place but does not shine", "add --sun");
-  if (verb.count("--picture-size") > 0) {
-    const auto size = parse_picture_size(texts.picture);
-    if (!size)
-      return usage_error("--picture-size: '" + texts.picture + "' is no size", "write 960x540 or 960");
-    options.picture_width = size->width;
-    options.picture_height = size->height;
-  }
+  const auto count = parse_count(text);
+  if (!count || *count > 100'000'000)
+    return usage_error("--points: '" + text + "' is no number of points", "write 1 to 100000000, or a file");
+  options.random_points = *count;
   return Nothing{};
+}
+
+Status finish_reference(const CLI::App& verb, const ReferenceTexts& texts, ReferenceOptions& options) {
+  if (verb.count("--points") > 0)
+    if (const Status status = finish_points(texts.points, options); !status) return status;
+  if (verb.count("--samples") > 0) options.samples = texts.samples;
+  if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
+  if (verb.count("--seed") > 0) options.seed = texts.seed;
+  if (verb.count("--target-error") > 0) {
+    options.target_error = parse_share(texts.target_error);
+    if (!options.target_error)
+      return usage_error("--target-error: '" + texts.target_error + "' is no share", "write 0.01 or 1%");
+  }
+  if (const Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
 }
 
 }  // namespace
@@ -217,13 +320,16 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   add_make(app, make);
   add_info(app, info);
   CLI::App* bake_verb = app.add_subcommand("bake", "light a scene");
-  bake_verb->add_option("SCENE", bake.options.input, "glTF, GLB, OBJ, PLY, STL, FBX or Collada")->required();
+  bake_verb->add_option("SCENE", bake.options.input, kSceneFormats)->required();
   add_bake_output(*bake_verb, bake.options, texts);
   add_bake_effort(*bake_verb, bake, texts);
-  add_bake_light(*bake_verb, texts);
+  add_light(*bake_verb, texts.light);
   bake_verb->footer(kBakeExamples);
   FormFactorCommand form_factors;
   add_form_factors(app, form_factors);
+  ReferenceCommand reference;
+  ReferenceTexts reference_texts;
+  add_reference(app, reference, reference_texts);
 
   if (const Status status = check_verb(app, arguments); !status) return status.error();
   complete_sun(arguments);
@@ -246,8 +352,14 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
     if (const Status status = finish_form_factors(app, form_factors); !status) return status.error();
     return Command(form_factors);
   }
-  if (const Status status = finish_bake(*bake_verb, texts, bake.options); !status) return status.error();
-  return Command(bake);
+  if (app.got_subcommand("bake")) {
+    if (const Status status = finish_bake(*bake_verb, texts, bake.options); !status) return status.error();
+    return Command(bake);
+  }
+  const Status status =
+      finish_reference(*app.get_subcommand("reference"), reference_texts, reference.options);
+  if (!status) return status.error();
+  return Command(reference);
 }
 
 }  // namespace goldthread::cli

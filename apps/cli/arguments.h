@@ -6,6 +6,7 @@
 
 #include "form_factor_arguments.h"
 #include "goldthread/bake.h"
+#include "goldthread/reference.h"
 
 namespace goldthread::cli {
 
@@ -24,12 +25,18 @@ struct BakeCommand {
   bool quiet = false;
 };
 
+struct ReferenceCommand {
+  ReferenceOptions options;
+  bool quiet = false;
+};
+
 /// Something to print and be done: help or the version.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, FormFactorCommand, ShowText>;
+using Command =
+    std::variant<MakeCommand, InfoCommand, BakeCommand, ReferenceCommand, FormFactorCommand, ShowText>;
 
 /// `arguments` without the program's name. Wrong usage is an Error with code kUsage.
 Result<Command> parse_arguments(std::vector<std::string> arguments);

@@ -6,6 +6,7 @@
 
 #include "arguments.h"
 #include "goldthread/bake.h"
+#include "goldthread/reference.h"
 #include "interrupt.h"
 #include "progress_line.h"
 #include "text_file.h"
@@ -43,28 +44,50 @@ int run(const InfoCommand& command) {
   return status ? 0 : fail(status.error());
 }
 
-std::string bake_lines(const BakeResult& result) {
-  std::string text = result.summary + "\n";
+template <typename AnyResult>
+std::string result_lines(const AnyResult& result) {
+  std::string text = result.summary;
+  if (!text.empty() && text.back() != '\n') text += '\n';
   for (const std::string& file : result.written) text += "wrote " + file + "\n";
   return text;
+}
+
+/// Says what a long run has done; returns its exit code.
+template <typename AnyResult>
+int tell(const AnyResult& result, bool quiet, const std::string& printed = {}) {
+  int code = 0;
+  if (!quiet)
+    for (const std::string& warning : result.warnings)
+      fmt::print(stderr, "goldthread: warning: {}\n", warning);
+  if (!printed.empty())
+    code = print_out(printed);
+  else if (!quiet)
+    code = print_out(result_lines(result));
+  return result.cancelled ? static_cast<int>(ErrorCode::kCancelled) : code;
+}
+
+BakeListener listener_for(ProgressLine& progress) {
+  BakeListener listener;
+  listener.on_progress = [&](const BakeEvent& event) { progress.show(event); };
+  listener.cancelled = interrupted;
+  return listener;
 }
 
 int run(const BakeCommand& command) {
   catch_interrupts();
   ProgressLine progress(command.quiet);
-  BakeListener listener;
-  listener.on_progress = [&](const BakeEvent& event) { progress.show(event); };
-  listener.cancelled = interrupted;
-  const Result<BakeResult> result = bake(command.options, listener);
+  const Result<BakeResult> result = bake(command.options, listener_for(progress));
+  progress.clear();
+  return result ? tell(*result, command.quiet) : fail(result.error());
+}
+
+int run(const ReferenceCommand& command) {
+  catch_interrupts();
+  ProgressLine progress(command.quiet);
+  const Result<ReferenceResult> result = reference(command.options, listener_for(progress));
   progress.clear();
   if (!result) return fail(result.error());
-  int code = 0;
-  if (!command.quiet) {
-    for (const std::string& warning : result->warnings)
-      fmt::print(stderr, "goldthread: warning: {}\n", warning);
-    code = print_out(bake_lines(*result));
-  }
-  return result->cancelled ? static_cast<int>(ErrorCode::kCancelled) : code;
+  return tell(*result, command.quiet, command.options.json_file == "-" ? result->json : std::string());
 }
 
 int run(const FormFactorCommand& command) {

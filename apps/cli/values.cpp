@@ -85,6 +85,21 @@ std::optional<PictureSize> parse_picture_size(const std::string& text) {
   return size;
 }
 
+std::optional<double> parse_share(const std::string& text) {
+  std::string rest = text;
+  const auto number = take_number(rest);
+  if (!number || !(rest.empty() || rest == "%")) return std::nullopt;
+  const double share = rest.empty() ? *number : *number / 100;
+  return share > 0 && share <= 1 ? std::optional(share) : std::nullopt;
+}
+
+std::optional<uint64_t> parse_count(const std::string& text) {
+  uint64_t count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, count);
+  return error == std::errc() && rest == end && count > 0 ? std::optional(count) : std::nullopt;
+}
+
 bool is_number(const std::string& text) {
   std::string rest = text;
   return take_number(rest).has_value() && rest.empty();

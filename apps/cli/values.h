@@ -21,6 +21,12 @@ struct PictureSize {
 /// "960x540" or "960". Both sides within 1..16384.
 std::optional<PictureSize> parse_picture_size(const std::string& text);
 
+/// "0.01" or "1%": a share above 0 and at most 1.
+std::optional<double> parse_share(const std::string& text);
+
+/// A whole number of at least 1, or nothing.
+std::optional<uint64_t> parse_count(const std::string& text);
+
 /// True when the whole of `text` is a finite number.
 bool is_number(const std::string& text);
 

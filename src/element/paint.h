@@ -5,9 +5,6 @@
 
 namespace goldthread {
 
-/// Light that is reflected for ever converges too slowly to be told from light that grows.
-constexpr float kMaxReflectance = 0.95f;
-
 /// Alpha of the part's material at a point of one of its tree's triangles, 0..1 (1 or 0 for a mask).
 float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 

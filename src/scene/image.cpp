@@ -19,6 +19,7 @@ vec2 placed(const Texture& texture, vec2 uv) {
 /// Column or row of a texel that may lie outside of the picture.
 uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
   const int64_t n = int64_t(size);
+  if (texel >= 0 && texel < n) return uint32_t(texel);  // nearly always, and divisions are slow
   if (wrap == Wrap::kClamp) return uint32_t(std::clamp<int64_t>(texel, 0, n - 1));
   if (wrap == Wrap::kRepeat) return uint32_t(((texel % n) + n) % n);
   const int64_t m = ((texel % (2 * n)) + 2 * n) % (2 * n);
@@ -39,18 +40,21 @@ Neighbours neighbours(float coordinate, uint32_t size, Wrap wrap) {
   return {wrapped(int64_t(below), size, wrap), wrapped(int64_t(below) + 1, size, wrap), float(texel - below)};
 }
 
-std::array<float, 256> srgb_table() {
+template <typename Decode>
+std::array<float, 256> table_of(const Decode& decode) {
   std::array<float, 256> table{};
-  for (size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(float(i) / 255);
+  for (size_t i = 0; i < table.size(); ++i) table[i] = decode(float(i) / 255);
   return table;
 }
 
-vec4 texel_at(const Image& image, uint32_t x, uint32_t y, bool srgb) {
-  static const std::array<float, 256> linear = srgb_table();
+// Divisions and powers for all that a byte can be, worked out once.
+const std::array<float, 256> kShares = table_of([](float share) { return share; });
+const std::array<float, 256> kLinear = table_of(srgb_to_linear);
+
+inline vec4 texel_at(const Image& image, uint32_t x, uint32_t y, bool srgb) {
   const uint8_t* t = &image.rgba[(size_t(y) * image.width + x) * 4];
-  const float alpha = float(t[3]) / 255;
-  if (srgb) return vec4(linear[t[0]], linear[t[1]], linear[t[2]], alpha);
-  return vec4(float(t[0]) / 255, float(t[1]) / 255, float(t[2]) / 255, alpha);
+  const std::array<float, 256>& colour = srgb ? kLinear : kShares;
+  return {colour[t[0]], colour[t[1]], colour[t[2]], kShares[t[3]]};
 }
 
 vec4 sample(const Texture& texture, const std::vector<Image>& images, vec2 uv, bool srgb) {

@@ -7,6 +7,10 @@
 
 namespace goldthread {
 
+/// All that computes light takes brighter surfaces as this: light that is reflected for ever converges too
+/// slowly to be told from light that grows.
+constexpr float kMaxReflectance = 0.95f;
+
 enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
 
 /// A glTF metallic-roughness material reduced to its diffuse light. Reflectance is base colour * (1 -

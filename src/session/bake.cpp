@@ -176,7 +176,7 @@ Status Bake::load() {
   Result<Scene> scene = read_scene(options_.input);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  add_requested_lights(scene_, options_);
+  add_requested_lights(scene_, options_.sky, options_.sun);
   report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
   if (options_.fix_normals) report_.warnings.push_back(fix_scene_normals(scene_));
   std::erase(report_.warnings, std::string());

@@ -35,7 +35,7 @@ class CliTest(unittest.TestCase):
 
     def test_help_and_version(self):
         self.assertIn("Examples:", self.run_it("--help").stdout)
-        for verb in ("make", "info", "bake", "formfactors"):
+        for verb in ("make", "info", "bake", "reference", "formfactors"):
             done = self.run_it(verb, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("--help", done.stdout)
@@ -57,11 +57,21 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--picture-size"], "bake", "x.glb", "-o", "y.png", "--picture-size", "960x")
         self.assert_fails(2, ["--sun"], "bake", "x.glb", "-o", "y.glb", "--sun-azimuth", "10")
 
+    def test_wrong_usage_of_reference_is_2(self):
+        self.assert_fails(2, ["--points"], "reference", "x.glb")
+        self.assert_fails(2, ["--points"], "reference", "x.glb", "--points", "0")
+        self.assert_fails(2, ["--points"], "reference", "x.glb", "--points", "-3")
+        self.assert_fails(2, ["--vertices"], "reference", "x.glb", "--points", "3", "--vertices")
+        self.assert_fails(2, ["--target-error"], "reference", "x.glb", "--points", "3", "--target-error", "few")
+        self.assert_fails(2, ["--target-error"], "reference", "x.glb", "--points", "3", "--target-error", "-1%")
+        self.assert_fails(2, ["--samples"], "reference", "x.glb", "--points", "3", "--samples", "0")
+        self.assert_fails(2, ["x.jpg", ".png"], "reference", "x.glb", "-o", "x.jpg")
+
     def test_bad_input_is_3(self):
         self.path("empty.glb").write_bytes(b"")
         self.path("cut.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n")
         self.path("really.obj").write_bytes(b"Kaydara FBX Binary  \0")
-        for verb in (["info"], ["bake", "-o", "y.glb"]):
+        for verb in (["info"], ["bake", "-o", "y.glb"], ["reference", "--points", "1"]):
             self.assert_fails(3, ["nope.glb"], *verb, "nope.glb")
             self.assert_fails(3, ["empty.glb"], *verb, "empty.glb")
             self.assert_fails(3, ["cut.ply", "cut off"], *verb, "cut.ply")
@@ -145,6 +155,39 @@ class CliTest(unittest.TestCase):
         self.path("ok.json").write_text(json.dumps(self.SQUARES))
         self.assert_fails(6, ["gone/f.json"], "formfactors", "ok.json", "--json", "gone/f.json")
         self.assertFalse(self.path("f.json").exists())
+
+    def test_reference(self):
+        self.run_it("make", "furnace")
+        done = self.run_it("reference", "furnace.glb", "--points", "20", "--samples", "256", "--json", "p.json",
+                           "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("20 points", done.stdout)
+        self.assertIn("wrote p.json", done.stdout)
+        points = json.loads(self.path("p.json").read_text())
+        mean = sum(point["irradiance"][0] for point in points["points"]) / 20
+        self.assertAlmostEqual(mean, 2, delta=0.05)
+        self.assertNotIn("points", json.loads(self.path("r.json").read_text()))
+        printed = self.run_it("reference", "furnace.glb", "--resume", "p.json", "--samples", "512", "--json", "-",
+                              "--quiet")
+        self.assertEqual(json.loads(printed.stdout)["samples"], {"least": 512, "most": 512})
+        quiet = self.run_it("reference", "furnace.glb", "-o", "p.png", "--picture-size", "32x24", "--quiet",
+                            "--target-error", "20%", "--sun", "1000")
+        self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+        self.assertEqual(self.path("p.png").read_bytes()[1:4], b"PNG")
+        self.path("off.json").write_text('[{"point": [0, 0, 0], "normal": [0, 1, 0]}]')
+        self.assert_fails(3, ["off.json", "point 0", "0.5 m"], "reference", "furnace.glb", "--points", "off.json")
+
+    def test_interrupted_reference_writes_what_there_is_and_is_130(self):
+        self.run_it("make", "office")
+        run = subprocess.Popen([PROGRAM, "reference", "office.glb", "--vertices", "--samples", "1000000000", "--json",
+                                "p.json"], cwd=self.folder.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(2)
+        run.send_signal(signal.SIGINT)
+        begin = time.monotonic()
+        run.communicate(timeout=60)
+        self.assertLess(time.monotonic() - begin, 5)  # a second, and what a busy machine adds
+        self.assertEqual(run.returncode, 130)
+        self.assertEqual(json.loads(self.path("p.json").read_text())["stopped_by"], "cancelled")
 
     def test_sun_stands_alone_before_the_scene(self):
         self.run_it("make", "cornell-box")

@@ -1,0 +1,57 @@
+// The yardstick: irradiance and pictures by unbiased path tracing, with their standard errors.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "goldthread/bake.h"
+#include "goldthread/error.h"
+
+namespace goldthread {
+
+/// What to measure is one of: `points_file`, `random_points`, `vertices`, `resume_file`, `pictures`.
+struct ReferenceOptions {
+  std::string input;  ///< scene, as in BakeOptions
+
+  std::string points_file;            ///< JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres
+  uint64_t random_points = 0;         ///< spread over all lit sides by area
+  bool vertices = false;              ///< all vertices of all instances
+  std::string resume_file;            ///< go on from an earlier `json_file` of the same scene and light
+  std::vector<std::string> pictures;  ///< .png .exr: radiance through the scene's camera
+
+  std::string json_file;    ///< results of points; empty for none, "-" for standard output
+  std::string report_file;  ///< figures of the run as JSON, empty for none
+
+  /// When to stop; the first that is reached. With none of the three: 1024 samples a point, 64 a pixel.
+  std::optional<uint64_t> samples;     ///< a point or pixel, rounded up to a multiple of 16
+  std::optional<double> time_limit;    ///< seconds for the whole run
+  std::optional<double> target_error;  ///< mean over points of standard error over mean, as 0.01
+
+  int threads = 0;                          ///< 0: all
+  std::optional<uint64_t> seed;             ///< 0 when absent; when resuming, the file's
+  std::optional<std::array<float, 3>> sky;  ///< as in BakeOptions
+  std::optional<BakeOptions::Sun> sun;      ///< as in BakeOptions
+  int picture_width = 960, picture_height = 0;
+  double exposure = 0;  ///< of a .png; 0 chooses
+};
+
+struct ReferenceResult {
+  /// Figures of the run: `points`, `samples` (least and most), `mean_relative_error`, `irradiance_lx` (least,
+  /// mean, most), `rays`, `seconds`, `mrays_per_second`, `ray_time_share`, `seed`, `threads`, `stopped_by`,
+  /// `warnings`.
+  std::string report;
+  std::string summary;  ///< the same for a person, some lines
+  std::string json;     ///< `report` with `points`, of which each has its `irradiance`; empty for pictures
+  std::vector<std::string> warnings;
+  std::vector<std::string> written;  ///< files
+  bool cancelled = false;
+};
+
+/// Path traces the scene with next-event estimation, multiple importance sampling and Russian roulette. The
+/// same seed gives the same numbers for any number of threads, and continued runs give the same as
+/// uninterrupted ones. On cancellation, within a second, what there is is written and `cancelled` is set.
+Result<ReferenceResult> reference(const ReferenceOptions& options, const BakeListener& listener = {});
+
+}  // namespace goldthread

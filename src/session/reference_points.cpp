@@ -1,0 +1,177 @@
+#include "session/reference_points.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+namespace goldthread {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kListCure = R"(write a list of {"point": [x, y, z], "normal": [x, y, z]}, in metres)";
+constexpr const char* kResumeCure = "give a file that an earlier run wrote with --json";
+
+Error bad(const std::string& file, const std::string& place, const std::string& message,
+          const std::string& cure) {
+  return Error{ErrorCode::kBadInput, message, file, place, cure};
+}
+
+Result<Json> read_json(const std::string& file, const char* cure) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code none;
+  if (!in || std::filesystem::is_directory(file, none))
+    return bad(file, "", "cannot be read", "check the name and that it is a file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  try {
+    return Json::parse(text.str());
+  } catch (const Json::parse_error& error) {
+    return bad(file, fmt::format("byte {}", error.byte), "is no JSON", cure);
+  } catch (const Json::exception&) {
+    return bad(file, "", "has a number beyond all numbers", cure);
+  }
+}
+
+/// Three finite numbers, or nothing.
+std::optional<dvec3> vector_of(const Json& record, const char* name) {
+  if (!record.is_object() || !record.contains(name)) return std::nullopt;
+  const Json& value = record[name];
+  if (!value.is_array() || value.size() != 3) return std::nullopt;
+  dvec3 v(0);
+  for (int k = 0; k < 3; ++k) {
+    const Json& number = value[static_cast<size_t>(k)];
+    if (!number.is_number()) return std::nullopt;
+    v[k] = number.get<double>();
+    if (!std::isfinite(v[k]) || std::abs(v[k]) > 1e30) return std::nullopt;
+  }
+  return v;
+}
+
+Json array_of(const dvec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Result<Receiver> read_point(const Json& record, const TracedScene& scene, const std::string& file,
+                            const std::string& place) {
+  const auto point = vector_of(record, "point"), normal = vector_of(record, "normal");
+  if (!point) return bad(file, place, "has no \"point\" of three finite numbers", kListCure);
+  if (!normal) return bad(file, place, "has no \"normal\" of three finite numbers", kListCure);
+  const double length = glm::length(*normal);
+  if (!(length > 1e-12))
+    return bad(file, place, "its normal has no length", "give the side that light falls on");
+  const PlacedReceiver placed = place_receiver(scene, vec3(*point), vec3(*normal / length));
+  if (placed.distance > on_surface_distance(scene))
+    return bad(file, place, fmt::format("lies on no surface: the nearest is {:.4g} m away", placed.distance),
+               "give points of the scene's surfaces, in metres");
+  return placed.receiver;
+}
+
+Json to_json(const Receiver& receiver, const IrradianceSums& sums) {
+  Json record;
+  record["point"] = array_of(dvec3(receiver.point));
+  record["normal"] = array_of(dvec3(receiver.normal));
+  if (receiver.instance != Receiver::kNowhere) {
+    record["instance"] = receiver.instance;
+    record["primitive"] = receiver.primitive;
+    record["vertex"] = receiver.vertex;
+    record["back"] = receiver.back;
+  }
+  const IrradianceValue value = evaluate(sums);
+  const bool known = sums.samples > 0;
+  record["irradiance"] = known ? array_of(value.mean) : Json();
+  record["standard_error"] = known ? array_of(value.standard_error) : Json();
+  record["samples"] = sums.samples;
+  record["origin"] = array_of(dvec3(receiver.origin));
+  Json batches = Json::array();
+  for (const dvec3& batch : sums.batches)
+    for (int k = 0; k < 3; ++k) batches.push_back(batch[k]);
+  if (known) record["batch_sums"] = std::move(batches);
+  return record;
+}
+
+/// False where the record is not what `to_json` writes.
+bool from_json(const Json& record, Receiver& receiver, IrradianceSums& sums) {
+  const auto point = vector_of(record, "point"), normal = vector_of(record, "normal"),
+             origin = vector_of(record, "origin");
+  if (!point || !normal || !origin || !record.contains("samples")) return false;
+  if (!record["samples"].is_number_unsigned()) return false;
+  receiver.point = vec3(*point);
+  receiver.normal = vec3(*normal);
+  receiver.origin = vec3(*origin);
+  if (!(std::abs(length(receiver.normal) - 1) < 1e-3f)) return false;
+  if (record.contains("vertex")) {
+    receiver.instance = record.at("instance").get<uint32_t>();
+    receiver.primitive = record.at("primitive").get<uint32_t>();
+    receiver.vertex = record.at("vertex").get<uint32_t>();
+    receiver.back = record.at("back").get<bool>();
+  }
+  sums.samples = record["samples"].get<uint64_t>();
+  if (sums.samples % kBatches != 0) return false;
+  if (sums.samples == 0) return true;
+  if (!record.contains("batch_sums") || record["batch_sums"].size() != 3 * kBatches) return false;
+  for (size_t i = 0; i < 3 * kBatches; ++i)
+    sums.batches[i / 3][static_cast<int>(i % 3)] = record["batch_sums"][i].get<double>();
+  return true;
+}
+
+}  // namespace
+
+Result<std::vector<Receiver>> read_points(const std::string& file, const TracedScene& scene) {
+  const Result<Json> json = read_json(file, kListCure);
+  if (!json) return json.error();
+  if (!json->is_array() || json->empty()) return bad(file, "", "is no list of points", kListCure);
+  std::vector<Receiver> receivers;
+  for (size_t i = 0; i < json->size(); ++i) {
+    const Result<Receiver> one = read_point((*json)[i], scene, file, fmt::format("point {}", i));
+    if (!one) return one.error();
+    receivers.push_back(*one);
+  }
+  return receivers;
+}
+
+std::string write_estimate(Json figures, const SavedEstimate& estimate) {
+  figures["seed"] = estimate.seed;
+  figures["rays"] = estimate.rays;
+  figures["seconds"] = estimate.seconds;
+  figures["ray_seconds"] = estimate.ray_seconds;
+  figures["fingerprint"] = estimate.fingerprint;
+  std::string text = figures.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.find_last_not_of("}\n ") + 1);
+  text += ",\n  \"points\": [";
+  for (size_t i = 0; i < estimate.receivers.size(); ++i)
+    text += (i > 0 ? ",\n    " : "\n    ") + to_json(estimate.receivers[i], estimate.sums[i]).dump();
+  return text + "\n  ]\n}\n";
+}
+
+Result<SavedEstimate> read_estimate(const std::string& file) {
+  const Result<Json> json = read_json(file, kResumeCure);
+  if (!json) return json.error();
+  SavedEstimate saved;
+  std::string place;
+  try {
+    saved.seed = json->at("seed").get<uint64_t>();
+    saved.fingerprint = json->at("fingerprint").get<uint64_t>();
+    saved.rays = json->at("rays").get<uint64_t>();
+    saved.seconds = json->at("seconds").get<double>();
+    saved.ray_seconds = json->at("ray_seconds").get<double>();
+    const Json& points = json->at("points");
+    for (size_t i = 0; i < points.size(); ++i) {
+      place = fmt::format("point {}", i);
+      saved.receivers.emplace_back();
+      saved.sums.emplace_back();
+      if (!from_json(points.at(i), saved.receivers.back(), saved.sums.back()))
+        return bad(file, place, "cannot be gone on from", kResumeCure);
+    }
+  } catch (const Json::exception&) {
+    return bad(file, place, "cannot be gone on from: something is missing or of the wrong kind", kResumeCure);
+  }
+  if (saved.receivers.empty()) return bad(file, "", "has no points", kResumeCure);
+  return saved;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,31 @@
+// Lists of points in and out: what is to be measured, what was, and all that is needed to go on.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "goldthread/error.h"
+#include "trace/irradiance_estimate.h"
+
+namespace goldthread {
+
+/// Reads [{"point": [x, y, z], "normal": [x, y, z]}, ...], in metres; normals need not be unit. Every point
+/// must lie on a surface of the scene. Errors name the file and the record, as "point 3", counted from 0.
+Result<std::vector<Receiver>> read_points(const std::string& file, const TracedScene& scene);
+
+/// An estimate that was written.
+struct SavedEstimate {
+  uint64_t seed = 0, fingerprint = 0;
+  uint64_t rays = 0;
+  double seconds = 0, ray_seconds = 0;
+  std::vector<Receiver> receivers;
+  std::vector<IrradianceSums> sums;
+};
+
+/// `figures` as a JSON object with all that `read_estimate` needs besides, a point a line: its place, its
+/// irradiance (lux), standard error and samples, and its batches' sums, whose doubles survive the text
+/// exactly. Points without samples have null for irradiance and error.
+std::string write_estimate(nlohmann::ordered_json figures, const SavedEstimate& estimate);
+Result<SavedEstimate> read_estimate(const std::string& file);
+
+}  // namespace goldthread

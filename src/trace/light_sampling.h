@@ -1,0 +1,67 @@
+// The light that reaches a point directly, one sample at a time, and the densities that multiple importance
+// sampling weighs samples by (Veach and Guibas 1995).
+#pragma once
+#include "trace/emitter_table.h"
+#include "trace/scrambled_sobol.h"
+#include "trace/traced_scene.h"
+
+namespace goldthread {
+
+/// One way by which light may come.
+struct LightSample {
+  vec3 irradiance{0};  ///< lux: what it brings unless something is in between, over the sample's density
+  Ray shadow;          ///< from the point to the light
+  float density = 0;   ///< of its direction, 1/sr; 0 for lamps, which no other strategy can find
+};
+
+/// A direction about `normal` with density cosine / pi.
+vec3 cosine_direction(const vec3& normal, SobolPoint p);
+/// A direction of even density 1 / 4 pi.
+vec3 even_direction(SobolPoint p);
+
+/// The share of a sample of density `own` where another strategy has density `other` (power heuristic,
+/// exponent 2).
+inline float power_heuristic(float own, float other) {
+  if (!(own > 0)) return 0;
+  const float ratio = other / own;
+  return 1 / (1 + ratio * ratio);
+}
+
+/// Share of a lamp's intensity that goes along unit direction `d`: 1 for a point light; for a spot the square
+/// of (d . axis - cos outer) / (cos inner - cos outer), clamped to 0..1 (KHR_lights_punctual).
+float lamp_cone(const Light& lamp, const vec3& d);
+/// What KHR_lights_punctual's range leaves at `distance` metres: 1 - (distance / range)^4, at least 0.
+float lamp_range(const Light& lamp, float distance);
+
+/// Draws light for points of a scene, which must outlive it.
+class LightSampler {
+ public:
+  explicit LightSampler(const TracedScene& scene);
+
+  bool has_emitters() const { return !emitters_.empty(); }
+  bool has_sky() const { return scene_.scene().sky.present(); }
+  bool has_lamps() const { return !lamps_.empty(); }
+
+  /// One point of one emitting triangle, drawn by power. `origin` is off its surface already; `normal` is
+  /// unit.
+  LightSample sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const;
+  /// One direction to the sky: it is even, so that the cosine alone is worth following.
+  LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
+  /// One point, spot or directional light, drawn by what it would bring were nothing in between.
+  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u) const;
+
+  /// Density, 1/sr, with which sample_emitter takes the direction in which a ray has met an emitter after
+  /// `distance` metres at the given cosine between ray and normal.
+  float emitter_density(uint32_t triangle, float distance, float cosine) const;
+  /// Density, 1/sr, with which sample_sky takes a direction at that cosine to the receiver's normal.
+  float sky_density(float cosine) const { return has_sky() ? cosine / kPi : 0.0f; }
+
+ private:
+  LightSample lamp_light(const Light& lamp, const vec3& origin, const vec3& normal) const;
+
+  const TracedScene& scene_;
+  EmitterTable emitters_;
+  std::vector<Light> lamps_;  ///< those that shine
+};
+
+}  // namespace goldthread

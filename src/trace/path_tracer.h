@@ -1,0 +1,59 @@
+// Light along random paths: an unbiased estimate of the rendering equation (Kajiya 1986) for diffuse
+// surfaces, one path at a time. Nothing is clamped.
+#pragma once
+#include <cstdint>
+
+#include "trace/light_sampling.h"
+#include "trace/scrambled_sobol.h"
+#include "trace/traced_scene.h"
+
+namespace goldthread {
+
+/// The rays of some paths, and the time that went into them.
+struct RayCount {
+  uint64_t rays = 0;
+  uint64_t timed_rays = 0;   ///< those traced while `timed` was set
+  uint64_t nanoseconds = 0;  ///< that these spent in the ray caster
+  bool timed = false;        ///< reading clocks costs, so only some paths are timed
+
+  RayCount& operator+=(const RayCount& more) {
+    rays += more.rays;
+    timed_rays += more.timed_rays;
+    nanoseconds += more.nanoseconds;
+    return *this;
+  }
+  /// Seconds in the ray caster, were all rays like the timed ones.
+  double seconds() const {
+    return timed_rays == 0 ? 0
+                           : 1e-9 * static_cast<double>(nanoseconds) * static_cast<double>(rays) /
+                                 static_cast<double>(timed_rays);
+  }
+};
+
+/// Paths through a scene. Thread safe; refers to the scene, which must outlive it.
+class PathTracer {
+ public:
+  explicit PathTracer(const TracedScene& scene) : scene_(scene), lights_(scene) {}
+
+  /// One sample of the irradiance on a plane of unit `normal`, lux; its expectation is the integral of
+  /// incident radiance times cosine over the hemisphere. `origin` lies epsilon off its surface.
+  vec3 irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const;
+
+  /// One sample of the radiance that a camera sees along `ray`, nits. As in any viewer, backs of one-sided
+  /// surfaces are looked through by the camera (and by nothing else), and unlit surfaces show their colour.
+  vec3 radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const;
+
+  const TracedScene& scene() const { return scene_; }
+  const LightSampler& lights() const { return lights_; }
+
+ private:
+  vec3 direct(const vec3& origin, const vec3& normal, double lamp, PathSampler& sampler,
+              RayCount& count) const;
+  vec3 arriving(const LightSample& light, const vec3& normal, RayCount& count) const;
+  Meeting closest(const Ray& ray, RayCount& count) const;
+
+  const TracedScene& scene_;
+  LightSampler lights_;
+};
+
+}  // namespace goldthread

@@ -1,0 +1,241 @@
+#include "trace/traced_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "mesh/triangle_mesh.h"
+
+namespace goldthread {
+namespace {
+
+/// The unit vector along the double-precision cross product of two sides, or zero for a triangle without
+/// area.
+vec3 unit_normal(const vec3& a, const vec3& b, const vec3& c) {
+  const dvec3 area = cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a));
+  const double squared = dot(area, area);
+  return squared > 0 && std::isfinite(squared) ? vec3(area / std::sqrt(squared)) : vec3(0);
+}
+
+bool is_even(const TracedPart& part) {
+  const Material& m = *part.material;
+  return part.source->colours.empty() && !m.base_colour_texture.present() && !m.metallic_texture.present() &&
+         !m.emission_texture.present();
+}
+
+/// FNV-1a over the bytes of plain values.
+class Fingerprint {
+ public:
+  template <typename T>
+  void add(const T& value) {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) add_word(byte);
+  }
+  void add_word(uint32_t word) { state_ = (state_ ^ word) * 0x100000001b3u; }
+  void add(const vec3& v) {
+    for (int k = 0; k < 3; ++k) add(v[k]);
+  }
+  uint64_t value() const { return state_; }
+
+ private:
+  uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+void add_material(Fingerprint& print, const Material& m) {
+  print.add(m.base_colour);
+  print.add(m.emission);
+  print.add(m.alpha);
+  print.add(m.metallic);
+  print.add(m.alpha_cutoff);
+  print.add(m.alpha_mode);
+  print.add(m.double_sided);
+  print.add(m.unlit);
+  for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture}) {
+    print.add(t->image);
+    print.add(t->texcoord);
+    for (const vec2& v : {t->offset, t->scale, vec2(t->rotation, 0)}) print.add(vec3(v.x, v.y, 0));
+  }
+}
+
+void add_image(Fingerprint& print, const Image& image) {
+  print.add(image.width);
+  print.add(image.height);
+  for (size_t i = 0; i + 4 <= image.rgba.size(); i += 4) {
+    uint32_t texel = 0;
+    std::memcpy(&texel, &image.rgba[i], 4);
+    print.add_word(texel);
+  }
+}
+
+void add_light(Fingerprint& print, const Light& light) {
+  print.add(light.kind);
+  print.add(light.intensity);
+  print.add(light.position);
+  print.add(light.direction);
+  print.add(vec3(light.inner_cone, light.outer_cone, light.range));
+}
+
+}  // namespace
+
+TracedScene::TracedScene(const Scene& scene) : scene_(scene) {
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t p = 0; p < scene.meshes[scene.instances[i].mesh].primitives.size(); ++p) add(i, p);
+  std::vector<uint8_t> see_through;
+  for (const TracedTriangle& t : triangles_)
+    see_through.push_back(parts_[t.part].material->alpha_mode != AlphaMode::kOpaque);
+  caster_ = std::make_unique<RayCaster>(
+      positions_, corners_, see_through,
+      [this](uint32_t triangle, vec2 weights, const Ray&) { return 1 - coverage(triangle, weights); });
+  epsilon_ = caster_->epsilon();
+}
+
+void TracedScene::add(uint32_t instance, uint32_t primitive) {
+  const mat4& transform = scene_.instances[instance].transform;
+  const Primitive& source = scene_.meshes[scene_.instances[instance].mesh].primitives[primitive];
+  const bool mirrored = glm::determinant(mat3(transform)) < 0;
+  const auto first_vertex = static_cast<uint32_t>(positions_.size());
+  for (const vec3& p : source.positions) positions_.emplace_back(transform * vec4(p, 1));
+  TracedPart part;
+  part.instance = instance;
+  part.primitive = primitive;
+  part.source = &source;
+  part.material = &scene_.materials[source.material];
+  part.first_triangle = static_cast<uint32_t>(triangles_.size());
+  for (uint32_t t = 0; t < source.triangle_count(); ++t) {
+    const uint32_t* index = &source.indices[3 * size_t{t}];
+    const UVec3 corners = first_vertex + UVec3(index[0], index[1], index[2]);
+    const vec3 normal = unit_normal(positions_[corners.x], positions_[corners.y], positions_[corners.z]);
+    if (normal == vec3(0) || !is_finite(normal)) continue;
+    corners_.push_back(corners);
+    triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t});
+  }
+  part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
+  parts_.push_back(part);
+  if (part.triangle_count == 0 || !is_even(part)) return;
+  parts_.back().reflectance = reflectance(part.first_triangle, vec2(0));
+  parts_.back().emission = emission(part.first_triangle, vec2(0));
+  parts_.back().even = true;
+}
+
+bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
+  const Material& m = material(triangle);
+  return !m.unlit && (m.double_sided || dot(triangles_[triangle].normal, direction) < 0);
+}
+
+Meeting TracedScene::closest(const Ray& ray) const {
+  const Hit hit = caster_->closest(ray);
+  Meeting met;
+  if (hit.missed()) return met;
+  const vec3& front = triangles_[hit.triangle].normal;
+  met.triangle = hit.triangle;
+  met.distance = hit.distance;
+  met.weights = hit.weights;
+  met.normal = dot(front, ray.direction) < 0 ? front : -front;
+  met.live = is_live(hit.triangle, ray.direction);
+  if (!met.live && !material(hit.triangle).unlit) look_for_front(ray, met);
+  return met;
+}
+
+void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
+  const vec3 p = ray.origin + met.distance * ray.direction;
+  const float tolerance = 2 * epsilon_;
+  uint32_t found = Hit::kMiss;
+  caster_->near(p, tolerance, [&](uint32_t t) {
+    if (t >= found || !is_live(t, ray.direction) || material(t).alpha_mode != AlphaMode::kOpaque) return;
+    if (std::abs(dot(triangles_[t].normal, met.normal)) < 0.999f) return;
+    if (lies_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2), tolerance)) found = t;
+  });
+  if (found == Hit::kMiss) return;
+  const dvec3 a(corner(found, 0)), u = dvec3(corner(found, 1)) - a, v = dvec3(corner(found, 2)) - a;
+  const dvec3 n = cross(u, v), w = dvec3(p) - a;
+  const double squared = dot(n, n);
+  met.triangle = found;
+  met.weights = vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared);
+  met.live = true;
+}
+
+template <typename T>
+T TracedScene::interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const {
+  const TracedTriangle& t = triangles_[triangle];
+  const uint32_t* index = &parts_[t.part].source->indices[3 * size_t{t.source}];
+  return (1 - weights.x - weights.y) * values[index[0]] + weights.x * values[index[1]] +
+         weights.y * values[index[2]];
+}
+
+vec2 TracedScene::texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const {
+  const std::vector<vec2>& uv =
+      parts_[triangles_[triangle].part].source->texcoords[std::min<uint8_t>(texture.texcoord, 1)];
+  return uv.empty() ? vec2(0) : interpolate(uv, triangle, weights);
+}
+
+vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {
+  const TracedPart& part = parts_[triangles_[triangle].part];
+  const Material& m = *part.material;
+  vec4 colour(m.base_colour, m.alpha);
+  if (m.base_colour_texture.present())
+    colour *= sample_texture(m.base_colour_texture, scene_.images,
+                             texcoord(m.base_colour_texture, triangle, weights));
+  if (!part.source->colours.empty()) colour *= interpolate(part.source->colours, triangle, weights);
+  return colour;
+}
+
+vec3 TracedScene::reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Material& m = *part.material;
+  if (m.unlit) return vec3(0);
+  float metallic = m.metallic;
+  if (metallic > 0 && m.metallic_texture.present())
+    metallic *= sample_data_texture(m.metallic_texture, scene_.images,
+                                    texcoord(m.metallic_texture, triangle, weights))
+                    .z;
+  if (metallic == 1) return vec3(0);
+  return glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
+}
+
+vec3 TracedScene::emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Material& m = *part.material;
+  if (m.unlit || !m.emits()) return vec3(0);
+  if (!m.emission_texture.present()) return m.emission;
+  return m.emission * vec3(sample_texture(m.emission_texture, scene_.images,
+                                          texcoord(m.emission_texture, triangle, weights)));
+}
+
+float TracedScene::coverage(uint32_t triangle, vec2 weights) const {
+  const Material& m = material(triangle);
+  if (m.alpha_mode == AlphaMode::kOpaque) return 1;
+  const float alpha = base_colour(triangle, weights).w;
+  if (m.alpha_mode == AlphaMode::kMask) return alpha >= m.alpha_cutoff ? 1.0f : 0.0f;
+  return std::clamp(alpha, 0.0f, 1.0f);
+}
+
+vec3 TracedScene::unlit_colour(uint32_t triangle, vec2 weights) const {
+  return vec3(base_colour(triangle, weights));
+}
+
+vec3 TracedScene::point(uint32_t triangle, vec2 weights) const {
+  return (1 - weights.x - weights.y) * corner(triangle, 0) + weights.x * corner(triangle, 1) +
+         weights.y * corner(triangle, 2);
+}
+
+float TracedScene::area(uint32_t triangle) const {
+  return length(area_vector(corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)));
+}
+
+uint64_t TracedScene::fingerprint() const {
+  Fingerprint print;
+  for (uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (int k = 0; k < 3; ++k) print.add(corner(t, k));
+    const Primitive& source = *parts_[triangles_[t].part].source;
+    print.add(source.material);
+    for (const std::vector<vec2>& uv : source.texcoords)
+      if (!uv.empty()) print.add(vec3(interpolate(uv, t, vec2(0.25f, 0.5f)), 0));
+    if (!source.colours.empty()) print.add(vec3(interpolate(source.colours, t, vec2(0.25f, 0.5f))));
+  }
+  for (const Image& image : scene_.images) add_image(print, image);
+  for (const Material& m : scene_.materials) add_material(print, m);
+  for (const Light& light : scene_.lights) add_light(print, light);
+  print.add(scene_.sky.radiance);
+  return print.value();
+}
+
+}  // namespace goldthread

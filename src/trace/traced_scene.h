@@ -1,0 +1,108 @@
+// The scene as a path tracer meets it: world triangles as they are in the file, nothing welded, clustered or
+// averaged, so that it has no mistake in common with the solver that it judges.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+#include "visibility/ray_caster.h"
+
+namespace goldthread {
+
+/// The triangles of one primitive of one instance.
+struct TracedPart {
+  uint32_t instance = 0, primitive = 0;
+  const Primitive* source = nullptr;
+  const Material* material = nullptr;
+  uint32_t first_triangle = 0, triangle_count = 0;
+  bool even = false;    ///< no texture and no vertex colour: the next two hold all over
+  vec3 reflectance{0};  ///< as TracedScene::reflectance
+  vec3 emission{0};     ///< as TracedScene::emission
+};
+
+/// One triangle of the world.
+struct TracedTriangle {
+  vec3 normal{0};       ///< unit, to the front: by the winding, turned where the instance mirrors
+  uint32_t part = 0;    ///< TracedScene::parts()
+  uint32_t source = 0;  ///< its number in the source primitive
+};
+
+/// Where a ray ends.
+struct Meeting {
+  uint32_t triangle = Hit::kMiss;
+  float distance = 0;  ///< in lengths of the ray's direction
+  vec2 weights{0};     ///< barycentric, of the source triangle's corners 1 and 2
+  vec3 normal{0};      ///< unit, of the side that the ray comes from
+  bool live = false;   ///< that side reflects and emits: the front, or either side of what is two-sided
+
+  bool missed() const { return triangle == Hit::kMiss; }
+};
+
+/// Borrows the scene, which must outlive it. Triangles without area or with corners that are not finite are
+/// left out.
+class TracedScene {
+ public:
+  explicit TracedScene(const Scene& scene);
+  TracedScene(const TracedScene&) = delete;  // the ray caster calls back into this object
+  TracedScene& operator=(const TracedScene&) = delete;
+
+  /// The nearest surface. Of alpha-masked and blended ones a share of rays, their coverage, is stopped. Where
+  /// the black back of one sheet is met and another sheet in the same place shows its front, as in plates
+  /// without thickness that are modelled as two, it is the front.
+  Meeting closest(const Ray& ray) const;
+  /// Share of light that gets along the ray from near to far.
+  float transmittance(const Ray& ray) const { return caster_->transmittance(ray); }
+
+  /// Diffuse reflectance at a point: base colour x texture x vertex colour x (1 - metallic), within 0 and
+  /// kMaxReflectance; 0 where the material is unlit. Not times coverage.
+  vec3 reflectance(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    return part.even ? part.reflectance : reflectance_at(part, triangle, weights);
+  }
+  /// Emitted luminance, nits, not times coverage; 0 where the material is unlit.
+  vec3 emission(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    return part.even ? part.emission : emission_at(part, triangle, weights);
+  }
+  /// Share of a point that is there, 0..1: 0 or 1 for a mask, the clamped alpha for a blend.
+  float coverage(uint32_t triangle, vec2 weights) const;
+  /// What an unlit material shows: its colour, taken as nits.
+  vec3 unlit_colour(uint32_t triangle, vec2 weights) const;
+
+  const Scene& scene() const { return scene_; }
+  std::span<const TracedPart> parts() const { return parts_; }
+  std::span<const TracedTriangle> triangles() const { return triangles_; }
+  const Material& material(uint32_t triangle) const { return *parts_[triangles_[triangle].part].material; }
+  /// World position of corner 0, 1 or 2, in the source's order.
+  const vec3& corner(uint32_t triangle, int k) const { return positions_[corners_[triangle][k]]; }
+  vec3 point(uint32_t triangle, vec2 weights) const;
+  float area(uint32_t triangle) const;  ///< m2, one side
+  const RayCaster& caster() const { return *caster_; }
+  /// How far rays start from the surface that they leave, metres.
+  float epsilon() const { return epsilon_; }
+  /// A hash of triangles, paint and lights: estimates may be continued only where it is the same.
+  uint64_t fingerprint() const;
+
+ private:
+  void add(uint32_t instance, uint32_t primitive);
+  vec3 reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  vec4 base_colour(uint32_t triangle, vec2 weights) const;
+  vec2 texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const;
+  template <typename T>
+  T interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const;
+  bool is_live(uint32_t triangle, const vec3& direction) const;
+  void look_for_front(const Ray& ray, Meeting& met) const;
+
+  const Scene& scene_;
+  std::vector<TracedPart> parts_;
+  std::vector<TracedTriangle> triangles_;
+  std::vector<vec3> positions_;  ///< world
+  std::vector<UVec3> corners_;   ///< per triangle, into positions_
+  std::unique_ptr<RayCaster> caster_;
+  float epsilon_ = 0;
+};
+
+}  // namespace goldthread

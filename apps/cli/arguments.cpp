@@ -85,7 +85,7 @@ Status check_verb(const CLI::App& app, const std::vector<std::string>& arguments
   const auto is_it = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
   if (!app.get_subcommands(is_it).empty()) return Nothing{};
   return usage_error("there is no verb '" + arguments[0] + "'",
-                     "choose make, info, bake, reference or formfactors");
+                     "choose make, info, bake, reference, compare or formfactors");
 }
 
 void add_make(CLI::App& app, MakeCommand& make) {
@@ -327,6 +327,8 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   bake_verb->footer(kBakeExamples);
   FormFactorCommand form_factors;
   add_form_factors(app, form_factors);
+  CompareCommand compare;
+  add_compare(app, compare);
   ReferenceCommand reference;
   ReferenceTexts reference_texts;
   add_reference(app, reference, reference_texts);
@@ -351,6 +353,10 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   if (app.got_subcommand("formfactors")) {
     if (const Status status = finish_form_factors(app, form_factors); !status) return status.error();
     return Command(form_factors);
+  }
+  if (app.got_subcommand("compare")) {
+    if (const Status status = finish_compare(app, compare); !status) return status.error();
+    return Command(compare);
   }
   if (app.got_subcommand("bake")) {
     if (const Status status = finish_bake(*bake_verb, texts, bake.options); !status) return status.error();

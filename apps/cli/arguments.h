@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "compare_arguments.h"
 #include "form_factor_arguments.h"
 #include "goldthread/bake.h"
 #include "goldthread/reference.h"
@@ -35,8 +36,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<MakeCommand, InfoCommand, BakeCommand, ReferenceCommand, FormFactorCommand, ShowText>;
+using Command = std::variant<MakeCommand, InfoCommand, BakeCommand, ReferenceCommand, CompareCommand,
+                             FormFactorCommand, ShowText>;
 
 /// `arguments` without the program's name. Wrong usage is an Error with code kUsage.
 Result<Command> parse_arguments(std::vector<std::string> arguments);

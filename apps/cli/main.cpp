@@ -90,6 +90,15 @@ int run(const ReferenceCommand& command) {
   return tell(*result, command.quiet, command.options.json_file == "-" ? result->json : std::string());
 }
 
+int run(const CompareCommand& command) {
+  catch_interrupts();
+  ProgressLine progress(command.quiet);
+  const Result<CompareResult> result = compare(command.options, listener_for(progress));
+  progress.clear();
+  if (!result) return fail(result.error());
+  return tell(*result, command.quiet, command.options.json_file == "-" ? result->json : std::string());
+}
+
 int run(const FormFactorCommand& command) {
   catch_interrupts();
   ProgressLine progress(command.quiet);

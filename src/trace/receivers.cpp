@@ -71,6 +71,9 @@ Receiver random_receiver(const TracedScene& scene, const Sides& sides, uint32_t 
     const bool back = scene.material(t).double_sided && hash(draw, 4) % 2 == 1;
     r.normal = back ? -scene.triangles()[t].normal : scene.triangles()[t].normal;
     r.origin = r.point + scene.epsilon() * r.normal;
+    r.triangle = t;
+    r.weights = weights;
+    r.back = back;
     if (scene.coverage(t, weights) > 0) break;
   }
   return r;

@@ -13,10 +13,12 @@ struct Receiver {
   vec3 point{0};
   vec3 normal{0};                ///< unit: of the plane that light is measured on
   vec3 origin{0};                ///< where rays start: a little above the surface, off its edges
+  uint32_t triangle = kNowhere;  ///< of a random or given place: TracedScene::triangles()
+  vec2 weights{0};               ///< there, of corners 1 and 2
   uint32_t instance = kNowhere;  ///< of a vertex: Scene::instances
   uint32_t primitive = 0;        ///< of a vertex: Mesh::primitives
   uint32_t vertex = 0;           ///< of a vertex: Primitive::positions
-  bool back = false;             ///< of a vertex: the back of a two-sided surface
+  bool back = false;             ///< the back of a two-sided surface
 };
 
 /// `count` points spread evenly by area over all sides that receive light: fronts, and backs of what is

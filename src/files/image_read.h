@@ -1,0 +1,14 @@
+// Pictures in, as light.
+#pragma once
+#include <string>
+
+#include "goldthread/error.h"
+#include "scene/image.h"
+
+namespace goldthread {
+
+/// .exr: channels R, G, B (or Y alone) as they are. .png, .jpg, .webp: 8-bit sRGB turned linear, 0..1. Sides
+/// of at most kLargestImageSide.
+Result<FloatImage> read_picture(const std::string& file);
+
+}  // namespace goldthread

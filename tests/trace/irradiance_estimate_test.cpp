@@ -188,6 +188,17 @@ TEST(IrradianceEstimate, StopsInTimeAndWhenCancelled) {
   }
 }
 
+// So many points that a round over all of them takes longer than anyone would wait.
+TEST(IrradianceEstimate, StopsWithinARound) {
+  const Traced t = box();
+  IrradianceEstimate estimate(*t.tracer, random_receivers(*t.traced, 300000, 3), 0);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(estimate.run({.time_limit = 0.5}, CancelToken()), StopReason::kTimeLimit);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.5);
+  EXPECT_GT(estimate.sums().front().samples, 0u);
+  EXPECT_EQ(estimate.sums().back().samples, 0u);
+}
+
 TEST(IrradianceEstimate, CountsRaysAndTheirTime) {
   const Traced t = box();
   IrradianceEstimate estimate(*t.tracer, random_receivers(*t.traced, 20, 3), 0);

@@ -160,7 +160,7 @@ std::string write_estimate(Json figures, const SavedEstimate& estimate) {
   figures["seed"] = estimate.seed;
   figures["rays"] = estimate.rays;
   figures["seconds"] = estimate.seconds;
-  figures["ray_seconds"] = estimate.ray_seconds;
+  figures["ray_time_share"] = estimate.ray_time_share;
   figures["fingerprint"] = estimate.fingerprint;
   std::string text = figures.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.find_last_not_of("}\n ") + 1);
@@ -182,7 +182,7 @@ Result<SavedEstimate> read_estimate(const std::string& file) {
     saved.fingerprint = json->at("fingerprint").get<uint64_t>();
     saved.rays = json->at("rays").get<uint64_t>();
     saved.seconds = json->at("seconds").get<double>();
-    saved.ray_seconds = json->at("ray_seconds").get<double>();
+    saved.ray_time_share = json->at("ray_time_share").get<double>();
     const Json& points = json->at("points");
     for (size_t i = 0; i < points.size(); ++i) {
       place = fmt::format("point {}", i);

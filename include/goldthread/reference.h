@@ -38,7 +38,7 @@ struct ReferenceOptions {
 };
 
 struct ReferenceResult {
-  /// Figures of the run: `points`, `samples` (least and most), `mean_relative_error`, `irradiance_lx` (least,
+  /// Figures of the run: `scene`, `samples` (least and most), `mean_relative_error`, `irradiance_lx` (least,
   /// mean, most), `rays`, `seconds`, `mrays_per_second`, `ray_time_share`, `seed`, `threads`, `stopped_by`,
   /// `warnings`.
   std::string report;

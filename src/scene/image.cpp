@@ -12,6 +12,7 @@ namespace {
 /// KHR_texture_transform: scale, then rotate counter-clockwise as seen with v pointing down, then move.
 vec2 placed(const Texture& texture, vec2 uv) {
   uv *= texture.scale;
+  if (texture.rotation == 0) return uv + texture.offset;
   const float c = std::cos(texture.rotation), s = std::sin(texture.rotation);
   return vec2(c * uv.x + s * uv.y, c * uv.y - s * uv.x) + texture.offset;
 }
@@ -36,8 +37,9 @@ Neighbours neighbours(float coordinate, uint32_t size, Wrap wrap) {
   // Beyond 1e6 repeats a float has no fraction left; infinite and undefined coordinates end up there too.
   const float bounded = std::isfinite(coordinate) ? std::clamp(coordinate, -1e6f, 1e6f) : 0.0f;
   const double texel = double(bounded) * size - 0.5;
-  const double below = std::floor(texel);
-  return {wrapped(int64_t(below), size, wrap), wrapped(int64_t(below) + 1, size, wrap), float(texel - below)};
+  int64_t below = int64_t(texel);
+  if (double(below) > texel) --below;  // as std::floor, which is a call
+  return {wrapped(below, size, wrap), wrapped(below + 1, size, wrap), float(texel - double(below))};
 }
 
 template <typename Decode>

@@ -93,7 +93,7 @@ class Run {
   Result<SavedEstimate> receivers() const;
   Status write_json(const SavedEstimate& estimate);
   void describe_points(const SavedEstimate& estimate);
-  void describe_run(Json& figures, uint64_t rays, double seconds, double ray_seconds, StopReason reason);
+  void describe_run(Json& figures, uint64_t rays, double seconds, double ray_share, StopReason reason);
   StopRules rules(uint64_t usual_samples) const;
   template <typename Work>
   void run_watched(const EstimateProgress& progress, const Work& work);
@@ -231,10 +231,12 @@ Status Run::measure() {
               [&](const CancelToken& cancel) { reason = tracing.run(rules(kUsualSamples), cancel); });
   estimate.sums = tracing.sums();
   estimate.rays += tracing.rays().rays;
-  estimate.seconds += since(begin);
-  estimate.ray_seconds += tracing.rays().seconds();
+  const double seconds = since(begin), before_seconds = estimate.seconds;
+  estimate.seconds += seconds;
+  estimate.ray_time_share =
+      (estimate.ray_time_share * before_seconds + tracing.rays().ray_share() * seconds) / estimate.seconds;
   describe_points(estimate);
-  describe_run(figures_, estimate.rays, estimate.seconds, estimate.ray_seconds, reason);
+  describe_run(figures_, estimate.rays, estimate.seconds, estimate.ray_time_share, reason);
   figures_["seed"] = estimate.seed;
   result_.report = figures_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return write_json(estimate);
@@ -276,13 +278,12 @@ void Run::describe_points(const SavedEstimate& estimate) {
       low, high, mean);
 }
 
-void Run::describe_run(Json& figures, uint64_t rays, double seconds, double ray_seconds, StopReason reason) {
+void Run::describe_run(Json& figures, uint64_t rays, double seconds, double ray_share, StopReason reason) {
   const double rate = static_cast<double>(rays) * 1e-6 / std::max(1e-9, seconds);
-  const double share = std::min(1.0, ray_seconds / std::max(1e-9, seconds * threads_));
   figures["rays"] = rays;
   figures["seconds"] = seconds;
   figures["mrays_per_second"] = rate;
-  figures["ray_time_share"] = share;
+  figures["ray_time_share"] = ray_share;
   figures["seed"] = options_.seed.value_or(0);
   figures["threads"] = threads_;
   figures["stopped_by"] = name_of(reason);
@@ -290,7 +291,7 @@ void Run::describe_run(Json& figures, uint64_t rays, double seconds, double ray_
   result_.cancelled = reason == StopReason::kCancelled;
   result_.summary +=
       fmt::format("{:.1f} Mrays in {:.1f} s, {:.2f} Mrays/s, {:.0f}% of the time in the ray caster\n",
-                  static_cast<double>(rays) * 1e-6, seconds, rate, 100 * share);
+                  static_cast<double>(rays) * 1e-6, seconds, rate, 100 * ray_share);
 }
 
 Status Run::paint() {
@@ -312,7 +313,7 @@ Status Run::paint() {
   result_.summary =
       fmt::format("{} x {} pixels, {} samples each, mean standard error {:.2g}%\n", traced.image.width,
                   traced.image.height, traced.least_samples, 100 * traced.relative_error);
-  describe_run(figures_, traced.rays.rays, since(begin), traced.rays.seconds(), traced.stop_reason);
+  describe_run(figures_, traced.rays.rays, since(begin), traced.rays.ray_share(), traced.stop_reason);
   result_.report = figures_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   for (const std::string& file : options_.pictures) {
     FloatImage picture = traced.image;

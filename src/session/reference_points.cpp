@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <sstream>
+
+#include "base/parallel.h"
 
 namespace goldthread {
 namespace {
@@ -52,10 +57,6 @@ std::optional<dvec3> vector_of(const Json& record, const char* name) {
   return v;
 }
 
-Json array_of(const dvec3& v) {
-  return Json::array({v.x, v.y, v.z});
-}
-
 Result<Receiver> read_point(const Json& record, const TracedScene& scene, const std::string& file,
                             const std::string& place) {
   const auto point = vector_of(record, "point"), normal = vector_of(record, "normal");
@@ -71,30 +72,51 @@ Result<Receiver> read_point(const Json& record, const TracedScene& scene, const 
   return placed.receiver;
 }
 
-Json to_json(const Receiver& receiver, const IrradianceSums& sums) {
-  Json record;
-  record["point"] = array_of(dvec3(receiver.point));
-  record["normal"] = array_of(dvec3(receiver.normal));
-  if (receiver.instance != Receiver::kNowhere) {
-    record["instance"] = receiver.instance;
-    record["primitive"] = receiver.primitive;
-    record["vertex"] = receiver.vertex;
-    record["back"] = receiver.back;
+/// Numbers as the shortest text that reads back as the same double; null for what JSON has no word for.
+void append(std::string& text, std::span<const double> numbers) {
+  text += '[';
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) text += ',';
+    if (std::isfinite(numbers[i]))
+      fmt::format_to(std::back_inserter(text), "{}", numbers[i]);
+    else
+      text += "null";
   }
-  const IrradianceValue value = evaluate(sums);
-  const bool known = sums.samples > 0;
-  record["irradiance"] = known ? array_of(value.mean) : Json();
-  record["standard_error"] = known ? array_of(value.standard_error) : Json();
-  record["samples"] = sums.samples;
-  record["origin"] = array_of(dvec3(receiver.origin));
-  Json batches = Json::array();
-  for (const dvec3& batch : sums.batches)
-    for (int k = 0; k < 3; ++k) batches.push_back(batch[k]);
-  if (known) record["batch_sums"] = std::move(batches);
-  return record;
+  text += ']';
 }
 
-/// False where the record is not what `to_json` writes.
+void append(std::string& text, const char* name, const dvec3& v) {
+  fmt::format_to(std::back_inserter(text), "\"{}\":", name);
+  append(text, std::array{v.x, v.y, v.z});
+  text += ',';
+}
+
+/// One line of JSON. There may be a hundred thousand, and someone who has pressed Ctrl-C waits for them: so
+/// they are put together as text, not as trees of values.
+std::string record_of(const Receiver& receiver, const IrradianceSums& sums) {
+  std::string text = "{";
+  append(text, "point", dvec3(receiver.point));
+  append(text, "normal", dvec3(receiver.normal));
+  if (receiver.instance != Receiver::kNowhere)
+    fmt::format_to(std::back_inserter(text), R"("instance":{},"primitive":{},"vertex":{},"back":{},)",
+                   receiver.instance, receiver.primitive, receiver.vertex, receiver.back);
+  if (sums.samples > 0) {
+    const IrradianceValue value = evaluate(sums);
+    append(text, "irradiance", value.mean);
+    append(text, "standard_error", value.standard_error);
+  } else {
+    text += R"("irradiance":null,"standard_error":null,)";
+  }
+  append(text, "origin", dvec3(receiver.origin));
+  fmt::format_to(std::back_inserter(text), "\"samples\":{}", sums.samples);
+  if (sums.samples > 0) {
+    text += ",\"batch_sums\":";
+    append(text, std::span(&sums.batches[0].x, 3 * kBatches));
+  }
+  return text + "}";
+}
+
+/// False where the record is not what `record_of` writes.
 bool from_json(const Json& record, Receiver& receiver, IrradianceSums& sums) {
   const auto point = vector_of(record, "point"), normal = vector_of(record, "normal"),
              origin = vector_of(record, "origin");
@@ -138,13 +160,15 @@ std::string write_estimate(Json figures, const SavedEstimate& estimate) {
   figures["seed"] = estimate.seed;
   figures["rays"] = estimate.rays;
   figures["seconds"] = estimate.seconds;
-  figures["ray_seconds"] = estimate.ray_seconds;
+  figures["ray_time_share"] = estimate.ray_time_share;
   figures["fingerprint"] = estimate.fingerprint;
   std::string text = figures.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.find_last_not_of("}\n ") + 1);
   text += ",\n  \"points\": [";
-  for (size_t i = 0; i < estimate.receivers.size(); ++i)
-    text += (i > 0 ? ",\n    " : "\n    ") + to_json(estimate.receivers[i], estimate.sums[i]).dump();
+  std::vector<std::string> records(estimate.receivers.size());
+  parallel_for(
+      records.size(), [&](size_t i) { records[i] = record_of(estimate.receivers[i], estimate.sums[i]); }, 64);
+  for (size_t i = 0; i < records.size(); ++i) text += (i > 0 ? ",\n    " : "\n    ") + records[i];
   return text + "\n  ]\n}\n";
 }
 
@@ -158,7 +182,7 @@ Result<SavedEstimate> read_estimate(const std::string& file) {
     saved.fingerprint = json->at("fingerprint").get<uint64_t>();
     saved.rays = json->at("rays").get<uint64_t>();
     saved.seconds = json->at("seconds").get<double>();
-    saved.ray_seconds = json->at("ray_seconds").get<double>();
+    saved.ray_time_share = json->at("ray_time_share").get<double>();
     const Json& points = json->at("points");
     for (size_t i = 0; i < points.size(); ++i) {
       place = fmt::format("point {}", i);

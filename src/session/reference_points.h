@@ -17,7 +17,7 @@ Result<std::vector<Receiver>> read_points(const std::string& file, const TracedS
 struct SavedEstimate {
   uint64_t seed = 0, fingerprint = 0;
   uint64_t rays = 0;
-  double seconds = 0, ray_seconds = 0;
+  double seconds = 0, ray_time_share = 0;
   std::vector<Receiver> receivers;
   std::vector<IrradianceSums> sums;
 };

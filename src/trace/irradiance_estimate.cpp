@@ -149,8 +149,9 @@ bool IrradianceEstimate::trace_slice(const Round& round, size_t first, size_t la
     const uint32_t seed = hash(hash(seed_, static_cast<uint32_t>(p)), static_cast<uint32_t>(batch));
     dvec3 sum = sums_[p].batches[batch];
     RayCount ray_count;
-    for (uint64_t i = sums_[p].samples / kBatches; i < round.samples / kBatches; ++i) {
-      if (i % 8 == 0 && (stopped || stop())) {
+    const uint64_t begin = sums_[p].samples / kBatches;
+    for (uint64_t i = begin; i < round.samples / kBatches; ++i) {
+      if ((i - begin) % 8 == 0 && (stopped || stop())) {
         stopped = true;
         return;
       }

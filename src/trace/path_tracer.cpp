@@ -16,37 +16,63 @@ float largest(const vec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-/// What two readings of the clock measure of themselves: as much as a tenth of a ray.
+using Clock = std::chrono::steady_clock;
+
+int64_t nanoseconds_since(Clock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+}
+
+/// What reading the clock takes: as much as a tenth of a ray.
 int64_t clock_nanoseconds() {
-  using Clock = std::chrono::steady_clock;
   std::array<int64_t, 101> readings{};
-  for (int64_t& reading : readings) {
-    const auto begin = Clock::now();
-    reading = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
-  }
+  for (int64_t& reading : readings) reading = nanoseconds_since(Clock::now());
   std::nth_element(readings.begin(), readings.begin() + readings.size() / 2, readings.end());
   return readings[readings.size() / 2];
 }
 
+const int64_t kClockNanoseconds = clock_nanoseconds();
+
 /// Runs `trace` as one ray, timed where the count asks for it.
 template <typename Trace>
-auto counted(RayCount& count, const Trace& trace) {
+auto counted_ray(RayCount& count, const Trace& trace) {
   ++count.rays;
   if (!count.timed) return trace();
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   auto result = trace();
-  const auto time = std::chrono::steady_clock::now() - begin;
-  static const int64_t clock_itself = clock_nanoseconds();
-  const int64_t taken = std::chrono::duration_cast<std::chrono::nanoseconds>(time).count() - clock_itself;
-  ++count.timed_rays;
-  count.nanoseconds += static_cast<uint64_t>(std::max<int64_t>(0, taken));
+  count.ray_nanoseconds += nanoseconds_since(begin) - kClockNanoseconds;
+  return result;
+}
+
+/// Runs `trace` as one path; what its rays' clocks took is no part of it.
+template <typename Trace>
+vec3 counted_path(RayCount& count, const Trace& trace) {
+  if (!count.timed) return trace();
+  const uint64_t rays = count.rays;
+  const auto begin = Clock::now();
+  const vec3 result = trace();
+  const int64_t clocks = 2 * static_cast<int64_t>(count.rays - rays) + 1;
+  count.path_nanoseconds += nanoseconds_since(begin) - clocks * kClockNanoseconds;
   return result;
 }
 
 }  // namespace
 
+double RayCount::ray_share() const {
+  if (path_nanoseconds <= 0) return 0;
+  return std::clamp(static_cast<double>(ray_nanoseconds) / static_cast<double>(path_nanoseconds), 0.0, 1.0);
+}
+
+vec3 PathTracer::irradiance(const vec3& origin, const vec3& normal, PathSampler& sampler,
+                            RayCount& count) const {
+  return counted_path(count, [&] { return trace_irradiance(origin, normal, sampler, count); });
+}
+
+vec3 PathTracer::radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const {
+  return counted_path(count, [&] { return trace_radiance(ray, sampler, count); });
+}
+
 Meeting PathTracer::closest(const Ray& ray, RayCount& count) const {
-  return counted(count, [&] { return scene_.closest(ray); });
+  return counted_ray(count, [&] { return scene_.closest(ray); });
 }
 
 vec3 PathTracer::arriving(const LightSample& light, const vec3& normal, RayCount& count) const {
@@ -56,7 +82,7 @@ vec3 PathTracer::arriving(const LightSample& light, const vec3& normal, RayCount
     const float cosine = dot(normal, light.shadow.direction) / length(light.shadow.direction);
     weight = power_heuristic(light.density, std::max(0.0f, cosine) / kPi);
   }
-  return light.irradiance * (weight * counted(count, [&] { return scene_.transmittance(light.shadow); }));
+  return light.irradiance * (weight * counted_ray(count, [&] { return scene_.transmittance(light.shadow); }));
 }
 
 vec3 PathTracer::direct(const vec3& origin, const vec3& normal, double lamp, PathSampler& sampler,
@@ -72,7 +98,7 @@ vec3 PathTracer::direct(const vec3& origin, const vec3& normal, double lamp, Pat
 // E = integral of L cos = E[pi L] over cosine-distributed directions, and the L that comes back from a
 // diffuse surface is rho E / pi: so a path's throughput, relative to irradiance, is the product of
 // reflectances.
-vec3 PathTracer::irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const {
+vec3 PathTracer::trace_irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const {
   vec3 sum(0), throughput(1);
   for (int bounce = 1;; ++bounce) {
     const bool sure = bounce < kSureBounces;
@@ -105,7 +131,7 @@ vec3 PathTracer::irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayC
   }
 }
 
-vec3 PathTracer::radiance(const Ray& seen, PathSampler& sampler, RayCount& count) const {
+vec3 PathTracer::trace_radiance(const Ray& seen, PathSampler& sampler, RayCount& count) const {
   Ray ray = seen;
   Meeting met = closest(ray, count);
   while (!met.missed() && !met.live && !scene_.material(met.triangle).unlit) {
@@ -118,7 +144,7 @@ vec3 PathTracer::radiance(const Ray& seen, PathSampler& sampler, RayCount& count
   const vec3 reflectance = scene_.reflectance(met.triangle, met.weights);
   if (largest(reflectance) > 0) {
     const vec3 origin = ray.origin + met.distance * ray.direction + scene_.epsilon() * met.normal;
-    nits += reflectance / kPi * irradiance(origin, met.normal, sampler, count);
+    nits += reflectance / kPi * trace_irradiance(origin, met.normal, sampler, count);
   }
   return nits;
 }

@@ -9,25 +9,22 @@
 
 namespace goldthread {
 
-/// The rays of some paths, and the time that went into them.
+/// The rays of some paths, and the share of time that went into them.
 struct RayCount {
   uint64_t rays = 0;
-  uint64_t timed_rays = 0;   ///< those traced while `timed` was set
-  uint64_t nanoseconds = 0;  ///< that these spent in the ray caster
-  bool timed = false;        ///< reading clocks costs, so only some paths are timed
+  bool timed = false;            ///< reading clocks costs, so only some paths are timed
+  int64_t ray_nanoseconds = 0;   ///< of timed paths: in the ray caster
+  int64_t path_nanoseconds = 0;  ///< of timed paths: all of it
 
   RayCount& operator+=(const RayCount& more) {
     rays += more.rays;
-    timed_rays += more.timed_rays;
-    nanoseconds += more.nanoseconds;
+    ray_nanoseconds += more.ray_nanoseconds;
+    path_nanoseconds += more.path_nanoseconds;
     return *this;
   }
-  /// Seconds in the ray caster, were all rays like the timed ones.
-  double seconds() const {
-    return timed_rays == 0 ? 0
-                           : 1e-9 * static_cast<double>(nanoseconds) * static_cast<double>(rays) /
-                                 static_cast<double>(timed_rays);
-  }
+  /// Share of time in the ray caster, 0..1. Both times are of the same paths, so that a busy machine, which
+  /// interrupts either, hardly changes it.
+  double ray_share() const;
 };
 
 /// Paths through a scene. Thread safe; refers to the scene, which must outlive it.
@@ -37,7 +34,7 @@ class PathTracer {
 
   /// One sample of the irradiance on a plane of unit `normal`, lux; its expectation is the integral of
   /// incident radiance times cosine over the hemisphere. `origin` lies epsilon off its surface.
-  vec3 irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const;
+  vec3 irradiance(const vec3& origin, const vec3& normal, PathSampler& sampler, RayCount& count) const;
 
   /// One sample of the radiance that a camera sees along `ray`, nits. As in any viewer, backs of one-sided
   /// surfaces are looked through by the camera (and by nothing else), and unlit surfaces show their colour.
@@ -47,6 +44,8 @@ class PathTracer {
   const LightSampler& lights() const { return lights_; }
 
  private:
+  vec3 trace_irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const;
+  vec3 trace_radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const;
   vec3 direct(const vec3& origin, const vec3& normal, double lamp, PathSampler& sampler,
               RayCount& count) const;
   vec3 arriving(const LightSample& light, const vec3& normal, RayCount& count) const;

@@ -34,31 +34,67 @@ struct Pixel {
   }
 };
 
-struct Painter {
-  const PathTracer& tracer;
-  const Lens& lens;
-  vec2 size;
-  uint32_t seed;
+/// A picture in the making.
+class Painting {
+ public:
+  Painting(const PathTracer& tracer, const Lens& lens, uint32_t width, uint32_t height, uint64_t seed)
+      : tracer_(tracer),
+        lens_(lens),
+        width_(width),
+        height_(height),
+        seed_(hash(static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32))),
+        pixels_(size_t{width} * height) {}
 
+  /// One more pass over all pixels, or as many as it takes until `stop()`. False when it was stopped.
+  template <typename Stop>
+  bool add_pass(uint32_t pass, const Stop& stop, EstimateProgress& progress) {
+    std::atomic<bool> stopped{false};
+    std::vector<RayCount> rows(height_);
+    parallel_for(height_, [&](size_t y) {
+      RayCount row;
+      for (uint32_t x = 0; x < width_ && !stopped; ++x) {
+        if (stop())
+          stopped = true;
+        else
+          pixels_[y * width_ + x].add(sample(x, static_cast<uint32_t>(y), pass, row));
+      }
+      rows[y] = row;
+      progress.rays.fetch_add(row.rays, std::memory_order_relaxed);
+    });
+    for (const RayCount& row : rows) rays_ += row;
+    return !stopped;
+  }
+
+  double relative_error() const;
+  void finish(ReferenceImage& result) const;
+
+ private:
   /// The mean of one pass' samples of a pixel.
-  dvec3 sample(uint32_t x, uint32_t y, uint32_t pixel, uint32_t pass, RayCount& count) const {
-    const uint32_t pass_seed = hash(hash(seed, pixel), pass);
+  dvec3 sample(uint32_t x, uint32_t y, uint32_t pass, RayCount& count) const {
+    const uint32_t pixel = y * width_ + x, pass_seed = hash(hash(seed_, pixel), pass);
+    const vec2 corner(static_cast<float>(x), static_cast<float>(y)),
+        size(static_cast<float>(width_), static_cast<float>(height_));
     dvec3 sum(0);
     for (uint32_t i = 0; i < kBatches; ++i) {
-      count.timed = (pixel + i + pass) % kBatches == 0;
+      count.timed = (pixel + i + pass) % (2 * kBatches) == 0;
       PathSampler sampler(i, pass_seed);
       const SobolPoint p = sampler.next();
       const vec2 inside(static_cast<float>(unit_double(p.u)), static_cast<float>(unit_double(p.v)));
-      const Ray ray = lens.ray((vec2(static_cast<float>(x), static_cast<float>(y)) + inside) / size);
-      sum += dvec3(tracer.radiance(ray, sampler, count));
+      sum += dvec3(tracer_.radiance(lens_.ray((corner + inside) / size), sampler, count));
     }
     return sum / static_cast<double>(kBatches);
   }
+
+  const PathTracer& tracer_;
+  const Lens& lens_;
+  uint32_t width_, height_, seed_;
+  std::vector<Pixel> pixels_;
+  RayCount rays_;
 };
 
-double mean_error(const std::vector<Pixel>& pixels) {
+double Painting::relative_error() const {
   double sum = 0, lit = 0;
-  for (const Pixel& pixel : pixels) {
+  for (const Pixel& pixel : pixels_) {
     if (pixel.passes < 2 || !(pixel.luminance > 0)) continue;
     sum += pixel.relative_error();
     lit += 1;
@@ -66,25 +102,45 @@ double mean_error(const std::vector<Pixel>& pixels) {
   return lit > 0 ? sum / lit : 0;
 }
 
-void finish(const std::vector<Pixel>& pixels, ReferenceImage& result) {
+void Painting::finish(ReferenceImage& result) const {
   uint32_t least = std::numeric_limits<uint32_t>::max(), most = 0;
-  result.image.pixels.resize(pixels.size());
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    least = std::min(least, pixels[i].passes);
-    most = std::max(most, pixels[i].passes);
-    if (pixels[i].passes > 0) result.image.pixels[i] = vec3(pixels[i].sum / double(pixels[i].passes));
+  result.image.pixels.resize(pixels_.size());
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& pixel = pixels_[i];
+    least = std::min(least, pixel.passes);
+    most = std::max(most, pixel.passes);
+    if (pixel.passes > 0) result.image.pixels[i] = vec3(pixel.sum / static_cast<double>(pixel.passes));
   }
   result.least_samples = least * kBatches;
   result.most_samples = most * kBatches;
-  result.relative_error = mean_error(pixels);
+  result.relative_error = relative_error();
+  result.rays = rays_;
+}
+
+/// Adds passes until a rule or `cancel` says stop.
+StopReason paint(Painting& painting, const StopRules& rules, const CancelToken& cancel,
+                 EstimateProgress& progress) {
+  constexpr uint32_t kLeastPasses = 4;  // before the spread of passes means anything
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const uint64_t passes = (rules.samples + kBatches - 1) / kBatches;
+  for (uint32_t pass = 0; passes == 0 || pass < passes; ++pass) {
+    progress.error = painting.relative_error();
+    const double share = passes > 0 ? static_cast<double>(pass) / static_cast<double>(passes) : 0;
+    progress.share = std::max(share, elapsed() / rules.time_limit);
+    if (rules.target_error > 0 && pass >= kLeastPasses && progress.error <= rules.target_error)
+      return StopReason::kTargetError;
+    const auto stop = [&] { return cancel.cancelled() || elapsed() > rules.time_limit; };
+    if (!painting.add_pass(pass, stop, progress))
+      return cancel.cancelled() ? StopReason::kCancelled : StopReason::kTimeLimit;
+  }
+  return StopReason::kSamples;
 }
 
 }  // namespace
 
 ReferenceImage trace_reference_image(const PathTracer& tracer, const ReferenceImageOptions& options,
                                      const CancelToken& cancel, EstimateProgress& progress) {
-  const auto start = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   const Scene& scene = tracer.scene().scene();
   const Camera camera = scene.cameras.empty() ? frame_camera(scene) : scene.cameras.front();
   ReferenceImage result;
@@ -92,38 +148,9 @@ ReferenceImage trace_reference_image(const PathTracer& tracer, const ReferenceIm
   image.width = static_cast<uint32_t>(std::max(1, options.width));
   image.height = picture_height(options.height, image.width, camera);
   const Lens lens(camera, image.width, image.height);
-  const Painter painter{tracer, lens, vec2(float(image.width), float(image.height)),
-                        hash(static_cast<uint32_t>(options.seed), static_cast<uint32_t>(options.seed >> 32))};
-  std::vector<Pixel> pixels(size_t{image.width} * image.height);
-  std::vector<RayCount> rays(image.height);
-  const uint64_t passes = (options.stop.samples + kBatches - 1) / kBatches;
-  std::atomic<bool> stopped{false};
-  for (uint32_t pass = 0; !stopped; ++pass) {
-    progress.error = mean_error(pixels);
-    const double share = passes > 0 ? static_cast<double>(pass) / static_cast<double>(passes) : 0;
-    progress.share = std::max(share, elapsed() / options.stop.time_limit);
-    if (options.stop.target_error > 0 && pass >= 4 && progress.error <= options.stop.target_error) {
-      result.stop_reason = StopReason::kTargetError;
-      break;
-    }
-    if (passes > 0 && pass >= passes) break;
-    parallel_for(image.height, [&](size_t y) {
-      RayCount row;
-      for (uint32_t x = 0; x < image.width && !stopped; ++x) {
-        if (cancel.cancelled() || elapsed() > options.stop.time_limit) {
-          stopped = true;
-          break;
-        }
-        const auto pixel = static_cast<uint32_t>(y * image.width + x);
-        pixels[pixel].add(painter.sample(x, static_cast<uint32_t>(y), pixel, pass, row));
-      }
-      rays[y] += row;
-      progress.rays.fetch_add(row.rays, std::memory_order_relaxed);
-    });
-  }
-  if (stopped) result.stop_reason = cancel.cancelled() ? StopReason::kCancelled : StopReason::kTimeLimit;
-  for (const RayCount& more : rays) result.rays += more;
-  finish(pixels, result);
+  Painting painting(tracer, lens, image.width, image.height, options.seed);
+  result.stop_reason = paint(painting, options.stop, cancel, progress);
+  painting.finish(result);
   return result;
 }
 

@@ -188,6 +188,17 @@ TEST(IrradianceEstimate, StopsInTimeAndWhenCancelled) {
   }
 }
 
+// So many points that a round over all of them takes longer than anyone would wait.
+TEST(IrradianceEstimate, StopsWithinARound) {
+  const Traced t = box();
+  IrradianceEstimate estimate(*t.tracer, random_receivers(*t.traced, 300000, 3), 0);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(estimate.run({.time_limit = 0.5}, CancelToken()), StopReason::kTimeLimit);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.5);
+  EXPECT_GT(estimate.sums().front().samples, 0u);
+  EXPECT_EQ(estimate.sums().back().samples, 0u);
+}
+
 TEST(IrradianceEstimate, CountsRaysAndTheirTime) {
   const Traced t = box();
   IrradianceEstimate estimate(*t.tracer, random_receivers(*t.traced, 20, 3), 0);
@@ -197,9 +208,13 @@ TEST(IrradianceEstimate, CountsRaysAndTheirTime) {
     estimate.run({.samples = 1024}, CancelToken());
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_GE(estimate.rays().rays, 20u * 1024);
-  EXPECT_GT(estimate.rays().seconds(), 0);
-  EXPECT_LT(estimate.rays().seconds(), 1.2 * seconds);
+  const RayCount& count = estimate.rays();
+  EXPECT_GE(count.rays, 20u * 1024);
+  EXPECT_GT(count.ray_share(), 0);
+  EXPECT_LT(count.ray_share(), 1);
+  // Of one thread, timed paths are a part of the whole, and rays are a part of these.
+  EXPECT_LT(double(count.path_nanoseconds) * 1e-9, seconds);
+  EXPECT_LT(count.ray_nanoseconds, count.path_nanoseconds);
 }
 
 }  // namespace

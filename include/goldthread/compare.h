@@ -39,7 +39,8 @@ struct CompareResult {
 
 /// Measures luminance: irradiance (lux) at points of surfaces, or pixels. Errors are differences over the
 /// mean of what is measured against (relative_rmse, bias), or over its value there, at least a hundredth of
-/// the mean (the others). The reference's own noise is taken off the RMSE in quadrature, and told. When
+/// the mean (the others). Points inside solids, as of the floor beneath a box, are left out and told by
+/// themselves. The reference's own noise is taken off the RMSE in quadrature, and told. When
 /// cancelled what was traced so far is compared.
 Result<CompareResult> compare(const CompareOptions& options, const BakeListener& listener = {});
 

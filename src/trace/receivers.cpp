@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/rng.h"
+#include "math/oriented_box.h"
 #include "trace/scrambled_sobol.h"
 
 namespace goldthread {
@@ -145,6 +146,22 @@ std::vector<Receiver> vertex_receivers(const TracedScene& scene) {
   for (const TracedPart& part : scene.parts())
     if (!part.material->unlit) add_vertices(scene, part, receivers);
   return receivers;
+}
+
+bool is_buried(const TracedScene& scene, const Receiver& receiver) {
+  constexpr uint32_t kLooks = 64, kFew = 3;
+  const mat3 frame = frame_about(receiver.normal);
+  uint32_t others = 0;
+  for (uint32_t i = 0; i < kLooks && others <= kFew; ++i) {
+    const UnitSquarePoint p = r2_point(i, 17);
+    const float r = std::sqrt(p.u), turn = 2 * kPi * p.v;
+    Ray ray;
+    ray.origin = receiver.origin;
+    ray.direction = frame * vec3(r * std::cos(turn), r * std::sin(turn), std::sqrt(std::max(0.0f, 1 - p.u)));
+    const Meeting met = scene.closest(ray);
+    if (met.missed() || met.live) ++others;
+  }
+  return others <= kFew;
 }
 
 float on_surface_distance(const TracedScene& scene) {

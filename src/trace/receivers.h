@@ -38,6 +38,10 @@ struct PlacedReceiver {
 };
 PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const vec3& unit_normal);
 
+/// Whether nearly all that a receiver looks at (61 of 64 directions) is the black back of something: it lies
+/// inside a solid, as the floor does beneath a box, where nobody sees it.
+bool is_buried(const TracedScene& scene, const Receiver& receiver);
+
 /// Metres within which a point counts as lying on a surface: a ten-thousandth of the scene.
 float on_surface_distance(const TracedScene& scene);
 

@@ -35,7 +35,7 @@ class CliTest(unittest.TestCase):
 
     def test_help_and_version(self):
         self.assertIn("Examples:", self.run_it("--help").stdout)
-        for verb in ("make", "info", "bake", "reference", "formfactors"):
+        for verb in ("make", "info", "bake", "reference", "compare", "formfactors"):
             done = self.run_it(verb, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("--help", done.stdout)
@@ -117,6 +117,24 @@ class CliTest(unittest.TestCase):
         self.assertGreater(json.loads(self.path("r.json").read_text())["power_lm"]["emitted"], 0)
         quiet = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "--quality", "draft", "--quiet")
         self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    def test_compare(self):
+        self.run_it("make", "furnace")
+        self.run_it("bake", "furnace.glb", "-o", "a.gold", "--quality", "draft")
+        done = self.run_it("compare", "a.gold", "--reference", "--points", "50", "--samples", "256", "--json", "c.json",
+                           "-o", "d.png", "--picture-size", "16x12")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("RMSE", done.stdout)
+        figures = json.loads(self.path("c.json").read_text())
+        for name in ("points", "relative_rmse", "bias", "median_relative_error", "p99_relative_error",
+                     "reference_noise"):
+            self.assertIn(name, figures)
+        self.assertEqual(sorted(set(figures["worst"]) & {"position", "relative_error"}), ["position", "relative_error"])
+        self.assertEqual(self.path("d.png").read_bytes()[1:4], b"PNG")
+        printed = self.run_it("compare", "a.gold", "a.gold", "--json", "-")
+        self.assertEqual(json.loads(printed.stdout)["relative_rmse"], 0)
+        self.assert_fails(2, ["--samples", "--reference"], "compare", "a.gold", "a.gold", "--samples", "5")
+        self.assert_fails(3, ["nope.gold"], "compare", "nope.gold", "a.gold")
 
     SQUARES = {"surfaces": [{"name": "floor", "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]},
                             {"name": "lid", "vertices": [[0, 1, 1], [1, 1, 1], [1, 0, 1], [0, 0, 1]]}]}

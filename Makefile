@@ -1,6 +1,6 @@
 # The front door. `make demo` and `make test` set up all they need; a second run repeats nothing.
 .DEFAULT_GOAL := help
-.PHONY: help packages build program demo test bench fuzz format lint clean
+.PHONY: help packages build program demo test accuracy bench fuzz format lint clean
 
 PROGRAM := build/release/bin/goldthread
 FUZZ_SECONDS ?= 60
@@ -9,6 +9,7 @@ CXX_FILES = $(shell git ls-files --cached --others --exclude-standard '*.cpp' '*
 help:
 	@echo 'make demo     build, bake a scene and leave a lit GLB and a picture in out/'
 	@echo 'make test     build and run all tests'
+	@echo 'make accuracy exact cases through every method, as a table in out/accuracy/'
 	@echo 'make bench    build and run the benchmarks'
 	@echo 'make fuzz     run each fuzzer for FUZZ_SECONDS (60)'
 	@echo 'make format   lay out the sources with clang-format'
@@ -47,6 +48,9 @@ tools/node_modules/.package-lock.json: tools/package.json tools/package-lock.jso
 test: build tools/node_modules/.package-lock.json
 	tools/check_layers.py
 	ctest --test-dir build/release --output-on-failure -j2
+
+accuracy: program
+	tools/accuracy.py
 
 bench: build
 	@for program in build/release/bin/*_bench; do echo "== $$(basename $$program)"; $$program || exit 1; done

@@ -158,6 +158,25 @@ TEST(FormFactorMatrix, HemicubesAgreeWithTheExactMatrixWithinWhatTheySay) {
   }
 }
 
+TEST(FormFactorMatrix, APlateOfTwoFacesInOnePlaceHidesNeitherFromTheOther) {
+  PatchModel model = room(1);
+  const Polygon plate = rectangle({0.25, 0.25, 0.75}, {0.5, 0, 0}, {0, 0.5, 0});
+  model.patches.push_back(plate);
+  model.patches.emplace_back(plate.rbegin(), plate.rend());
+  MatrixOptions options;
+  options.method = MatrixMethod::kExact;
+  const FormFactorMatrix exact = built(model, options);
+  for (const MatrixMethod method : {MatrixMethod::kRays, MatrixMethod::kHemicube}) {
+    options.method = method;
+    options.rays = 64;
+    const FormFactorMatrix matrix = built(model, options);
+    for (const float share : matrix.back) EXPECT_EQ(share, 0);
+    for (uint32_t i = 0; i < matrix.size(); ++i)
+      for (uint32_t j = 0; j < matrix.size(); ++j)
+        EXPECT_NEAR(form_factor(matrix, i, j), form_factor(exact, i, j), 0.04) << i << " " << j;
+  }
+}
+
 TEST(FormFactorMatrix, ASinglePlaneMissesTheHorizon) {
   MatrixOptions options;
   options.method = MatrixMethod::kSinglePlane;

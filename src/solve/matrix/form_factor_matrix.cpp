@@ -54,21 +54,34 @@ struct TracedPatch {
   }
 };
 
-TracedPatch traced(const Polygon& polygon) {
+void add_points(const std::array<dvec3, 3>& c, int cuts, TracedPatch& out) {
+  if (cuts > 0) {
+    const dvec3 m[3] = {0.5 * (c[1] + c[2]), 0.5 * (c[2] + c[0]), 0.5 * (c[0] + c[1])};
+    for (const auto& part :
+         {std::array<dvec3, 3>{c[0], m[2], m[1]}, {m[2], c[1], m[0]}, {m[1], m[0], c[2]}, {m[0], m[1], m[2]}})
+      add_points(part, cuts - 1, out);
+    return;
+  }
+  const auto size = static_cast<float>(0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0])));
+  for (size_t k = 0; k < 3; ++k) {
+    out.points.emplace_back(kNear * c[k] + kBeside * (c[(k + 1) % 3] + c[(k + 2) % 3]));
+    out.weights.push_back(size / 3);
+  }
+}
+
+// Each triangle's rule is that of 4^cuts parts.
+TracedPatch traced(const Polygon& polygon, int cuts) {
   TracedPatch out;
   for (const dvec3& p : polygon) out.corners.emplace_back(p);
   out.normal = vec3(plane_of(polygon).normal);
   out.centre = vec3(mean_corner(polygon));
   out.radius = static_cast<float>(radius(polygon));
   for (const UVec3& t : triangulate(polygon)) {
-    const dvec3 c[3] = {polygon[t.x], polygon[t.y], polygon[t.z]};
+    const std::array<dvec3, 3> c{polygon[t.x], polygon[t.y], polygon[t.z]};
     const auto size = static_cast<float>(0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0])));
     out.triangles.push_back({vec3(c[0]), vec3(c[1]), vec3(c[2])});
     out.area_up_to.push_back(out.area += size);
-    for (int k = 0; k < 3; ++k) {
-      out.points.emplace_back(kNear * c[k] + kBeside * (c[(k + 1) % 3] + c[(k + 2) % 3]));
-      out.weights.push_back(size / 3);
-    }
+    add_points(c, cuts, out);
   }
   return out;
 }
@@ -117,7 +130,11 @@ class PairTracer {
  public:
   PairTracer(const PatchModel& model, const MatrixOptions& options)
       : model_(model), options_(options), caster_(build_caster(model)) {
-    for (const Polygon& polygon : model.patches) patches_.push_back(traced(polygon));
+    // Few patches are mostly large ones.
+    const int cuts = model.patches.size() <= kMostExact ? 1 : 0;
+    for (const Polygon& polygon : model.patches) patches_.push_back(traced(polygon, cuts));
+    patch_of_triangle_ = patches_of_triangles(model);
+    find_twins();
   }
 
   // What i and j exchange: the unobstructed exchange times the share that rays see of it.
@@ -145,8 +162,7 @@ class PairTracer {
   }
 
   // The whole row of i at once, both ways' pairs; what each point sees, averaged.
-  Row scan_row(uint32_t i, const DirectionGrid& grid, std::span<const uint32_t> patch_of_triangle,
-               float& environment, float& back, uint64_t& rays) const {
+  Row scan_row(uint32_t i, const DirectionGrid& grid, float& environment, float& back, uint64_t& rays) const {
     const TracedPatch& patch = patches_[i];
     std::map<uint32_t, std::pair<double, double>> shares;  // patch: front, and its error
     double missed = 0, behind = 0;
@@ -160,12 +176,22 @@ class PairTracer {
       rays += seen.rays;
       missed += weight * (seen.environment + seen.missing);
       for (const SeenShare& share : seen.seen) {
-        const uint32_t j = patch_of_triangle[share.triangle];
-        behind += weight * (share.back + (j == kOccluder ? share.front : 0));
-        if (j == kOccluder || share.front <= 0) continue;
-        auto& [front, error] = shares[j];
-        front += weight * share.front;
-        error += weight * share.error;
+        const uint32_t j = patch_of_triangle_[share.triangle];
+        const auto add = [&](uint32_t to, double form_factor) {
+          if (form_factor <= 0) return;
+          auto& [front, error] = shares[to];
+          front += weight * form_factor;
+          error += weight * share.error;
+        };
+        if (has_twin(share.triangle)) {
+          add(j, share.front);
+          add(twins_[j], share.back);
+        } else if (j == kOccluder) {
+          behind += weight * (share.back + share.front);
+        } else {
+          add(j, share.front);
+          behind += weight * share.back;
+        }
       }
     }
     environment = static_cast<float>(missed);
@@ -193,8 +219,8 @@ class PairTracer {
       ray.origin = patch.sample(place.u, place.v) + caster_.epsilon() * patch.normal;
       const Hit hit = caster_.closest(ray);
       if (hit.missed()) ++missed;
-      // Where two opposite faces lie in one place the one that is met by chance says nothing.
-      if (!hit.missed() && dot(hit.normal, ray.direction) > 0 && !is_backed(hit, ray)) ++behind;
+      // Of two opposite faces in one place the ray meets either.
+      if (!hit.missed() && dot(hit.normal, ray.direction) > 0 && !has_twin(hit.triangle)) ++behind;
     }
     const auto count = static_cast<float>(std::max(1u, options_.environment_rays));
     environment = static_cast<float>(missed) / count;
@@ -245,22 +271,37 @@ class PairTracer {
     return {share, std::sqrt(agreed * (1 - agreed) / (worth + 1))};
   }
 
-  bool is_backed(const Hit& hit, const Ray& ray) const {
-    Ray back = ray;
-    back.near = hit.distance;
-    const vec3 place = ray.origin + hit.distance * ray.direction;
-    back.origin = place + 4 * caster_.epsilon() * ray.direction;
-    back.direction = -ray.direction;
-    back.near = 0;
-    back.far = 8 * caster_.epsilon();
-    const Hit from_behind = caster_.closest(back);
-    return !from_behind.missed() && dot(from_behind.normal, back.direction) > 0;
+  // Plates are modelled as two opposite patches in one place.
+  void find_twins() {
+    twins_.assign(patches_.size(), kOccluder);
+    const auto rounded = [&](const vec3& p) {
+      return std::array<int64_t, 3>{std::llround(p.x / (4 * caster_.epsilon())),
+                                    std::llround(p.y / (4 * caster_.epsilon())),
+                                    std::llround(p.z / (4 * caster_.epsilon()))};
+    };
+    std::map<std::array<int64_t, 3>, std::vector<uint32_t>> at;
+    for (uint32_t i = 0; i < patches_.size(); ++i) {
+      std::vector<uint32_t>& here = at[rounded(patches_[i].centre)];
+      for (const uint32_t j : here)
+        if (dot(patches_[i].normal, patches_[j].normal) < -0.999f &&
+            std::abs(patches_[i].area - patches_[j].area) < 1e-4f * patches_[i].area) {
+          twins_[i] = j;
+          twins_[j] = i;
+        }
+      here.push_back(i);
+    }
+  }
+
+  bool has_twin(uint32_t triangle) const {
+    const uint32_t patch = patch_of_triangle_[triangle];
+    return patch != kOccluder && twins_[patch] != kOccluder;
   }
 
   const PatchModel& model_;
   const MatrixOptions& options_;
   RayCaster caster_;
   std::vector<TracedPatch> patches_;
+  std::vector<uint32_t> patch_of_triangle_, twins_;  // kOccluder: of none
 };
 
 // Builds rows in parallel and puts them together in order.
@@ -271,7 +312,6 @@ class MatrixBuilder {
       : model_(model), options_(options), cancel_(cancel), progress_(progress), tracer_(model, options) {
     if (scans_rows(options.method)) {
       grid_.emplace(grid_of(options));
-      patch_of_triangle_ = patches_of_triangles(model);
     }
     exact_ = options.method == MatrixMethod::kExact ||
              (options.method == MatrixMethod::kAuto &&
@@ -296,8 +336,7 @@ class MatrixBuilder {
       const auto number = static_cast<uint32_t>(i);
       if (grid_) {
         uint64_t rays = 0;
-        rows[i] =
-            tracer_.scan_row(number, *grid_, patch_of_triangle_, matrix.environment[i], matrix.back[i], rays);
+        rows[i] = tracer_.scan_row(number, *grid_, matrix.environment[i], matrix.back[i], rays);
         rays_ += rays;
       } else {
         rows[i] = row(number);
@@ -417,7 +456,6 @@ class MatrixBuilder {
   bool exact_ = false;
   std::optional<Blockers> blockers_;
   std::optional<DirectionGrid> grid_;
-  std::vector<uint32_t> patch_of_triangle_;
   std::atomic<uint64_t> bytes_{0}, rays_{0};
   std::atomic<bool> full_{false};
   std::mutex lock_;

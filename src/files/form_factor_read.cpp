@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "files/file_name.h"
 #include "files/gltf_read_container.h"
 #include "files/mesh_import.h"
 
@@ -177,9 +178,7 @@ Result<FormFactorInput> read_form_factor_cases(const std::string& file) {
   if (!bytes) return bytes.error();
   const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
   if (text.empty()) return bad_input(file, "", "the file is empty", "export it again");
-  const size_t dot = file.find_last_of('.');
-  std::string extension = dot == std::string::npos ? "" : file.substr(dot);
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = file_extension(file);
   if (extension == ".vs3") return parse_vs3(text, file);
   if (extension == ".json") return parse_form_factor_json(text, file);
   return Error{

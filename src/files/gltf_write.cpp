@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "files/atomic_file.h"
+#include "files/file_name.h"
 #include "files/gltf_read_container.h"
 
 namespace goldthread {
@@ -27,13 +28,6 @@ std::string name_to_uri(std::string_view name) {
     uri += plain ? std::string(1, c) : std::string(escaped);
   }
   return uri;
-}
-
-std::string lower_extension(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 bool same_folder(const std::string& a, const std::string& b) {
@@ -152,7 +146,7 @@ Status write_gltf_and_bin(const std::string& file, GltfDocument& document) {
 }  // namespace
 
 Status write_gltf_document(const std::string& file, GltfDocument document) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = file_extension(file);
   if (extension != ".glb" && extension != ".gltf")
     return Error{ErrorCode::kCannotWrite, "is neither .glb nor .gltf", file, "",
                  "give the file one of these endings"};

@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "files/file_name.h"
 #include "files/gltf_read_container.h"
 #include "files/image_decode.h"
 #include "files/mesh_import.h"
@@ -58,8 +59,7 @@ Result<FloatImage> read_exr(const std::string& file) {
 Result<FloatImage> read_picture(const std::string& file) {
   const Result<Bytes> bytes = read_file_bytes(file);
   if (!bytes) return bytes.error();
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = file_extension(file);
   if (extension == ".exr") return read_exr(file);
   const Result<Image> encoded = decode_image(*bytes);
   if (!encoded) {

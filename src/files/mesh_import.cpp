@@ -14,6 +14,7 @@
 #include <optional>
 #include <string_view>
 
+#include "files/file_name.h"
 #include "files/gltf_read_container.h"
 #include "files/ply_check.h"
 
@@ -140,8 +141,7 @@ Status check_faces(const aiScene& scene, const std::string& file) {
 }  // namespace
 
 MeshFormat mesh_format(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = file_extension(file);
   const auto found = std::find(std::begin(kExtensions), std::end(kExtensions), extension);
   return found == std::end(kExtensions) ? MeshFormat::kObj : MeshFormat(found - std::begin(kExtensions));
 }

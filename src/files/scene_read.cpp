@@ -8,18 +8,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "files/file_name.h"
 #include "files/gltf_read.h"
 #include "files/gltf_read_container.h"
 #include "files/mesh_read.h"
 
 namespace goldthread {
 namespace {
-
-std::string lower_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 /// A GLB under any name is one.
 bool starts_like_glb(const std::string& file) {
@@ -36,7 +31,7 @@ Result<Scene> read_scene(const std::string& file) {
   const auto kind = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(kind))
     return bad_input(file, "", "cannot open: no such file", "check the path");
-  const std::string extension = lower_extension(file);
+  const std::string extension = file_extension(file);
   if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
   if (std::filesystem::is_regular_file(kind) && starts_like_glb(file)) return read_gltf(file);
   for (const char* known : {".obj", ".ply", ".stl", ".fbx", ".dae"})

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "files/file_name.h"
 #include "files/gltf_build.h"
 #include "files/gltf_light.h"
 #include "files/gltf_read_container.h"
@@ -16,9 +17,7 @@ namespace goldthread {
 namespace {
 
 bool is_gltf(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = file_extension(file);
   return extension == ".gltf" || extension == ".glb";
 }
 

@@ -5,14 +5,13 @@
 #include <tbb/info.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <future>
 
 #include "base/rng.h"
 #include "element/overlap.h"
 #include "files/atomic_file.h"
+#include "files/file_name.h"
 #include "files/image_write.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
@@ -22,23 +21,12 @@
 #include "session/light_setup.h"
 #include "session/report.h"
 #include "session/solve_session.h"
+#include "session/watched.h"
 #include "trace/preview.h"
 #include "visibility/coincident.h"
 
 namespace goldthread {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string file_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 std::span<const uint8_t> as_bytes(const std::string& text) {
   return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
@@ -122,16 +110,9 @@ class Bake {
   /// asks to stop, or when `reserve` of the time limit is all that is left. Throws what `work` throws.
   template <typename Work>
   void run_watched(const std::string& stage, double share, double reserve, const Work& work) {
-    CancelToken stop;
-    std::future<void> done = std::async(std::launch::async, [&] { work(stop); });
-    auto told = Clock::now();
-    while (done.wait_for(std::chrono::milliseconds(2)) != std::future_status::ready) {
-      if (stop_asked() || time_left() < reserve * options_.time_limit.value_or(0)) stop.cancel();
-      if (since(told) < 0.5) continue;
-      told = Clock::now();
-      tell(stage, share);
-    }
-    done.get();
+    goldthread::run_watched(
+        work, [&] { return stop_asked() || time_left() < reserve * options_.time_limit.value_or(0); },
+        [&] { tell(stage, share); });
   }
   double time_left() const {
     return options_.time_limit ? *options_.time_limit - since(start_)

@@ -5,19 +5,18 @@
 #include <tbb/info.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <future>
 #include <memory>
 
 #include "base/parallel.h"
 #include "files/atomic_file.h"
+#include "files/file_name.h"
 #include "files/image_read.h"
 #include "files/image_write.h"
 #include "files/solution_file.h"
 #include "math/colour.h"
 #include "scene/lighting_lookup.h"
 #include "session/error_measure.h"
+#include "session/watched.h"
 #include "trace/irradiance_estimate.h"
 #include "trace/lens.h"
 #include "trace/preview.h"
@@ -25,19 +24,7 @@
 namespace goldthread {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr uint64_t kUsualSamples = 1024;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string file_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 Error usage(std::string message, std::string cure, std::string file = {}) {
   return Error{ErrorCode::kUsage, std::move(message), std::move(file), {}, std::move(cure)};
@@ -216,24 +203,19 @@ std::vector<IrradianceValue> Comparison::trace(const TracedScene& scene,
   rules.samples = options_.samples.value_or(open ? kUsualSamples : 0);
   rules.target_error = options_.target_error.value_or(0);
   if (options_.time_limit) rules.time_limit = std::max(0.0, *options_.time_limit - since(start_));
-  CancelToken cancel;
-  std::future<void> done =
-      std::async(std::launch::async, [&] { static_cast<void>(estimate.run(rules, cancel)); });
-  auto told = Clock::now();
-  while (done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-    if (listener_.cancelled && listener_.cancelled()) {
-      result_.cancelled = true;
-      cancel.cancel();
-    }
-    if (!listener_.on_progress || since(told) < 0.5) continue;
-    told = Clock::now();
-    const EstimateProgress& now = estimate.progress();
-    const double share = now.share;
-    listener_.on_progress({"trace", share, static_cast<double>(now.rays) / std::max(1e-3, since(start_)),
-                           now.error, since(start_),
-                           share > 0.02 ? since(start_) * (1 - share) / share : -1});
-  }
-  done.get();
+  run_watched(
+      [&](const CancelToken& cancel) { static_cast<void>(estimate.run(rules, cancel)); },
+      [&] {
+        if (listener_.cancelled && listener_.cancelled()) result_.cancelled = true;
+        return result_.cancelled;
+      },
+      [&] {
+        if (!listener_.on_progress) return;
+        const EstimateProgress& now = estimate.progress();
+        const double share = now.share, seconds = since(start_);
+        listener_.on_progress({"trace", share, static_cast<double>(now.rays) / std::max(1e-3, seconds),
+                               now.error, seconds, share > 0.02 ? seconds * (1 - share) / share : -1});
+      });
   rays_ += estimate.rays().rays;
   std::vector<IrradianceValue> values;
   least_samples_ = std::numeric_limits<uint64_t>::max();

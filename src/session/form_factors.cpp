@@ -5,25 +5,18 @@
 #include <tbb/info.h>
 
 #include <atomic>
-#include <chrono>
-#include <future>
 
 #include "files/form_factor_read.h"
 #include "session/form_factor_report.h"
+#include "session/watched.h"
 #include "solve/matrix/fold_surfaces.h"
 #include "solve/matrix/shape_form_factor.h"
 
 namespace goldthread {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Matrices with more rows are not printed.
 constexpr size_t kPrintedRows = 40;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 struct ShapeName {
   std::string operator()(const PointShape&) const { return "point"; }
@@ -141,19 +134,14 @@ class FormFactors {
 
   // On a thread of its own, so that this one can tell how far it is and hear that it should stop.
   Result<FormFactorMatrix> build(const PatchModel& patches) {
-    CancelToken stop;
     std::atomic<double> share{0};
-    auto work = std::async(std::launch::async, [&] {
-      return build_form_factor_matrix(patches, matrix_options(), stop, [&](double s) { share = s; });
-    });
-    auto told = Clock::now();
-    while (work.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
-      if (stop_asked()) stop.cancel();
-      if (since(told) < 0.5) continue;
-      told = Clock::now();
-      tell(share);
-    }
-    return work.get();
+    Result<FormFactorMatrix> matrix = stopped();
+    run_watched(
+        [&](const CancelToken& stop) {
+          matrix = build_form_factor_matrix(patches, matrix_options(), stop, [&](double s) { share = s; });
+        },
+        [&] { return stop_asked(); }, [&] { tell(share); });
+    return matrix;
   }
 
   Status answer_model(const PolygonModel& model) {

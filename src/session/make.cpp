@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "files/file_name.h"
 #include "files/scene_write.h"
 #include "goldthread/bake.h"
 #include "scene/procedural.h"
@@ -7,7 +8,7 @@
 namespace goldthread {
 
 Result<uint64_t> make_scene(const MakeOptions& options) {
-  const std::string extension = std::filesystem::path(options.output).extension().string();
+  const std::string extension = file_extension(options.output);
   if (extension != ".glb" && extension != ".gltf") {
     return Error{ErrorCode::kUsage, "cannot tell the output's format", options.output, "",
                  "end it in .glb or .gltf"};

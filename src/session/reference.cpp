@@ -5,38 +5,26 @@
 #include <tbb/info.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <future>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "files/atomic_file.h"
+#include "files/file_name.h"
 #include "files/image_write.h"
 #include "files/scene_read.h"
 #include "math/colour.h"
 #include "math/tone_map.h"
 #include "session/light_setup.h"
 #include "session/reference_points.h"
+#include "session/watched.h"
 #include "trace/reference_image.h"
 
 namespace goldthread {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr uint64_t kUsualSamples = 1024, kUsualPixelSamples = 64;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string file_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 Error usage(std::string message, std::string cure) {
   return Error{ErrorCode::kUsage, std::move(message), {}, {}, std::move(cure)};
@@ -167,19 +155,16 @@ StopRules Run::rules(uint64_t usual_samples) const {
 /// Runs `work(cancel)` on a thread of its own while this one tells its progress and listens for a stop.
 template <typename Work>
 void Run::run_watched(const EstimateProgress& progress, const Work& work) {
-  CancelToken cancel;
   const auto begin = Clock::now();
-  std::future<void> done = std::async(std::launch::async, [&] { work(cancel); });
-  auto told = Clock::now() - std::chrono::hours(1);
-  while (done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-    if (listener_.cancelled && listener_.cancelled()) cancel.cancel();
-    if (!listener_.on_progress || since(told) < 0.5) continue;
-    told = Clock::now();
-    const double elapsed = since(begin), share = progress.share;
-    listener_.on_progress({"trace", share, static_cast<double>(progress.rays) / std::max(1e-3, elapsed),
-                           progress.error, since(start_), share > 0.02 ? elapsed * (1 - share) / share : -1});
-  }
-  done.get();
+  goldthread::run_watched(
+      work, [&] { return listener_.cancelled && listener_.cancelled(); },
+      [&] {
+        if (!listener_.on_progress) return;
+        const double elapsed = since(begin), share = progress.share;
+        listener_.on_progress({"trace", share, static_cast<double>(progress.rays) / std::max(1e-3, elapsed),
+                               progress.error, since(start_),
+                               share > 0.02 ? elapsed * (1 - share) / share : -1});
+      });
 }
 
 /// The points to measure, with what is known of them.

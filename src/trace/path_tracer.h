@@ -44,11 +44,16 @@ class PathTracer {
   const LightSampler& lights() const { return lights_; }
 
  private:
-  vec3 trace_irradiance(vec3 origin, vec3 normal, PathSampler& sampler, RayCount& count) const;
+  /// A place on a surface, where its rays start, a little above, and its unit normal.
+  struct Start {
+    vec3 point, origin, normal;
+  };
+  vec3 trace_irradiance(const vec3& first, const vec3& plane, PathSampler& sampler, RayCount& count) const;
   vec3 trace_radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const;
-  vec3 direct(const vec3& origin, const vec3& normal, double lamp, PathSampler& sampler,
-              RayCount& count) const;
-  vec3 arriving(const LightSample& light, const vec3& normal, RayCount& count) const;
+  vec3 direct(const Start& start, double lamp, PathSampler& sampler, RayCount& count) const;
+  vec3 arriving(const LightSample& light, const Start& start, RayCount& count) const;
+  float from_the_point(const Start& start, const Ray& ray, const Meeting& met, float& cosine, float& distance,
+                       float& cosine_there) const;
   Meeting closest(const Ray& ray, RayCount& count) const;
 
   const TracedScene& scene_;

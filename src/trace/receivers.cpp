@@ -11,12 +11,25 @@
 namespace goldthread {
 namespace {
 
+/// Metres from a point of a triangle to the nearest of its edges' lines.
+float to_nearest_edge(const TracedScene& scene, uint32_t triangle, const vec3& p) {
+  float least = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const vec3 a = scene.corner(triangle, k), along = scene.corner(triangle, (k + 1) % 3) - a;
+    least = std::min(least, length(cross(along, p - a)) / length(along));
+  }
+  return least;
+}
+
 /// Rays from an edge would start in the plane of whatever meets the surface there: a few epsilons towards the
 /// middle of the triangle take them off it.
 vec3 off_the_edge(const TracedScene& scene, uint32_t triangle, const vec3& p, const vec3& outward) {
+  const float wanted = 4 * scene.epsilon();
+  const vec3 lifted = p + scene.epsilon() * outward;
+  if (to_nearest_edge(scene, triangle, p) >= wanted) return lifted;
   const vec3 inward = scene.point(triangle, vec2(1 / 3.0f)) - p;
-  const float distance = length(inward), step = std::min(4 * scene.epsilon(), 0.5f * distance);
-  return p + (distance > 0 ? inward * (step / distance) : vec3(0)) + scene.epsilon() * outward;
+  const float distance = length(inward), step = std::min(wanted, 0.5f * distance);
+  return distance > 0 ? lifted + inward * (step / distance) : lifted;
 }
 
 /// The point of a triangle nearest to p, in double precision (the plane's where it is inside, else an

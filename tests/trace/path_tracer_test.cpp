@@ -111,6 +111,25 @@ TEST(PathTracer, LampThatNearlyTouches) {
   expect_estimates(t.at(vec3(0), kUp), 10 * square_factor(1, 0.01f));
 }
 
+// Rays start a little above the point; what they bring must be the point's. Twice the lift over the distance
+// would be half a percent here.
+TEST(PathTracer, TheLiftOfRaysDoesNotShow) {
+  for (const float shift : {0.0f, 0.003f}) {
+    Scene scene;
+    add(scene, polygon({vec3(-4, -6, 0), vec3(6, -4, 0), vec3(0, 6, 0)}), diffuse(0));
+    add(scene, square(0.004f, 0.01f, false), diffuse(0, 1));
+    const Traced t(std::move(scene));
+    ASSERT_GT(t.traced->epsilon(), 2e-5f);
+    const std::array<vec3, 4> lamp_corners{vec3(-0.004f, -0.004f, 0.01f), vec3(-0.004f, 0.004f, 0.01f),
+                                           vec3(0.004f, 0.004f, 0.01f), vec3(0.004f, -0.004f, 0.01f)};
+    const vec3 x(shift, 0, 0);
+    const auto exact = double(dot(kUp, polygon_form_factor(x, kUp, lamp_corners)));
+    const IrradianceValue value = t.at(x, kUp, 1 << 16);
+    EXPECT_NEAR(value.mean.x, exact, 3 * value.standard_error.x + 2e-5 * exact);
+    EXPECT_LT(value.standard_error.x, 1e-4 * exact);
+  }
+}
+
 TEST(PathTracer, OneSidedBacksAreBlackAndBlock) {
   Scene scene = floor_scene(0);
   add(scene, square(1, 1, true), diffuse(0.9f, 10));  // shines up, away from the floor

@@ -11,27 +11,6 @@
 namespace goldthread {
 namespace {
 
-/// Metres from a point of a triangle to the nearest of its edges' lines.
-float to_nearest_edge(const TracedScene& scene, uint32_t triangle, const vec3& p) {
-  float least = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const vec3 a = scene.corner(triangle, k), along = scene.corner(triangle, (k + 1) % 3) - a;
-    least = std::min(least, length(cross(along, p - a)) / length(along));
-  }
-  return least;
-}
-
-/// Rays from an edge would start in the plane of whatever meets the surface there: a few epsilons towards the
-/// middle of the triangle take them off it.
-vec3 off_the_edge(const TracedScene& scene, uint32_t triangle, const vec3& p, const vec3& outward) {
-  const float wanted = 4 * scene.epsilon();
-  const vec3 lifted = p + scene.epsilon() * outward;
-  if (to_nearest_edge(scene, triangle, p) >= wanted) return lifted;
-  const vec3 inward = scene.point(triangle, vec2(1 / 3.0f)) - p;
-  const float distance = length(inward), step = std::min(wanted, 0.5f * distance);
-  return distance > 0 ? lifted + inward * (step / distance) : lifted;
-}
-
 /// The point of a triangle nearest to p, in double precision (the plane's where it is inside, else an
 /// edge's).
 dvec3 nearest_on_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -48,6 +27,29 @@ dvec3 nearest_on_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const 
     best = q;
   }
   return best;
+}
+
+/// Whether anything but the triangle's own plane comes within `distance` of p.
+bool meets_another_plane(const TracedScene& scene, uint32_t triangle, const vec3& p, float distance) {
+  bool meets = false;
+  scene.caster().near(p, distance, [&](uint32_t t) {
+    if (meets || std::abs(dot(scene.triangles()[t].normal, scene.triangles()[triangle].normal)) > 0.99999f)
+      return;
+    const dvec3 q = nearest_on_triangle(dvec3(p), dvec3(scene.corner(t, 0)), dvec3(scene.corner(t, 1)),
+                                        dvec3(scene.corner(t, 2)));
+    meets = glm::distance(q, dvec3(p)) <= static_cast<double>(distance);
+  });
+  return meets;
+}
+
+/// Rays from an edge would start in the plane of whatever meets the surface there: a few epsilons towards the
+/// middle of the triangle take them off it.
+vec3 off_the_edge(const TracedScene& scene, uint32_t triangle, const vec3& p, const vec3& outward) {
+  const float wanted = 4 * scene.epsilon();
+  const vec3 lifted = p + scene.epsilon() * outward;
+  const vec3 inward = scene.point(triangle, vec2(1 / 3.0f)) - p;
+  const float distance = length(inward), step = std::min(wanted, 0.5f * distance);
+  return distance > 0 ? lifted + inward * (step / distance) : lifted;
 }
 
 /// What an area-weighted draw chooses from.
@@ -189,6 +191,8 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
   const Box box = scene.scene().bounds();
   const float enough = box.empty() ? 0 : box.diagonal() + length(point - box.centre());
   float best = placed.distance;
+  uint32_t on = Receiver::kNowhere;
+  vec3 foot(0), up(0);
   // Of the surfaces about as near, the one that faces as the normal does.
   const float tolerance = on_surface_distance(scene);
   for (float radius = tolerance; std::isinf(best) && radius < 8 * enough; radius *= 4) {
@@ -202,9 +206,16 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
       best = claim;
       placed.distance = distance;
       const vec3 outward = facing < 0 ? -scene.triangles()[t].normal : scene.triangles()[t].normal;
-      placed.receiver.origin = off_the_edge(scene, t, q, outward);
+      on = t;
+      foot = q;
+      up = outward;
     });
   }
+  if (on == Receiver::kNowhere) return placed;
+  // In the middle of a surface it stays where it is, even between two triangles.
+  placed.receiver.origin = meets_another_plane(scene, on, foot, 4 * scene.epsilon())
+                               ? off_the_edge(scene, on, foot, up)
+                               : foot + scene.epsilon() * up;
   return placed;
 }
 

@@ -139,6 +139,9 @@ class CaseReader {
       out.names.push_back(named ? surface["name"].get<std::string>() : what);
     }
     if (out.surfaces.empty()) fail("surfaces", "is empty");
+    if (const auto twice = find_twice(out.surfaces))
+      fail(fmt::format("surface {}", twice->second + 1),
+           fmt::format("lies where surface {} lies and faces the same way", twice->first + 1));
     out.occluders = occluders(item);
     return out;
   }

@@ -57,6 +57,11 @@ class Vs3Reader {
       fail("holds no surfaces");
     }
     resolve();
+    if (const auto twice = find_twice(model_.surfaces)) {
+      place_ = wanted_[twice->second].place;
+      fail(fmt::format("it lies where the surface of {} lies and faces the same way",
+                       wanted_[twice->first].place));
+    }
     return std::move(model_);
   }
 

@@ -86,6 +86,36 @@ std::optional<std::string> polygon_problem(std::span<const dvec3> polygon, doubl
   return std::nullopt;
 }
 
+std::optional<std::pair<uint32_t, uint32_t>> find_twice(std::span<const Polygon> polygons) {
+  std::vector<dvec3> centres;
+  std::vector<uint32_t> order(polygons.size());
+  for (const Polygon& polygon : polygons) centres.push_back(mean_corner(polygon));
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return centres[a].x < centres[b].x; });
+  const auto has_corners_of = [](const Polygon& a, const Polygon& b, double tolerance) {
+    return std::all_of(b.begin(), b.end(), [&](const dvec3& p) {
+      return std::any_of(a.begin(), a.end(),
+                         [&](const dvec3& q) { return glm::distance(p, q) <= tolerance; });
+    });
+  };
+  std::optional<std::pair<uint32_t, uint32_t>> first;
+  for (size_t i = 0; i < order.size(); ++i) {
+    const Polygon& a = polygons[order[i]];
+    const double tolerance = 1e-6 * radius(a);
+    for (size_t k = i + 1; k < order.size(); ++k) {
+      if (centres[order[k]].x > centres[order[i]].x + tolerance) break;
+      if (glm::distance(centres[order[k]], centres[order[i]]) > tolerance) continue;
+      const Polygon& b = polygons[order[k]];
+      if (glm::dot(area_vector(a), area_vector(b)) <= 0 || !has_corners_of(a, b, tolerance) ||
+          !has_corners_of(b, a, tolerance))
+        continue;
+      const std::pair<uint32_t, uint32_t> pair = std::minmax(order[i], order[k]);
+      if (!first || pair.second < first->second) first = pair;
+    }
+  }
+  return first;
+}
+
 Polygon clip(std::span<const dvec3> polygon, const Plane& plane, double tolerance) {
   const auto height = [&](const dvec3& p) {
     const double h = plane.height(p);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "math/vec.h"
@@ -34,6 +35,10 @@ bool is_convex(std::span<const dvec3> polygon);
 /// What is wrong with a polygon: fewer than three corners, coordinates that are not finite, no area, corners
 /// further than `tolerance` of its size from its plane, edges that cross. Nothing when it is fit for use.
 std::optional<std::string> polygon_problem(std::span<const dvec3> polygon, double tolerance = 1e-5);
+
+/// Two polygons (numbers, ascending) that face the same way and have the same corners, to within a millionth
+/// of their size: one of them is there twice. The first such pair, if there is any.
+std::optional<std::pair<uint32_t, uint32_t>> find_twice(std::span<const Polygon> polygons);
 
 /// The part in front of the plane, empty when there is none. Corners within `tolerance` metres of the plane
 /// count as on it, so that polygons that share an edge leave no slivers. A polygon that is not convex keeps

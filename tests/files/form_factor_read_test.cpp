@@ -86,6 +86,9 @@ TEST(Vs3, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_THAT(vs3_error(kVertices + "V 5 2 0 0\nS 1 1 2 5 0 0 0 .9\n"), HasSubstr("no area"));
   EXPECT_THAT(vs3_error(kVertices + "V 5 0 0 1\nV 6 1 0 1\nV 7 1 1 1\n" + surface + "S 2 5 6 7 0 1 0 .9\n"),
               HasSubstr("surface 2: it does not lie in its base"));
+  EXPECT_THAT(vs3_error(kVertices + surface + "S 2 2 3 4 1 0 0 .9\n"),
+              HasSubstr("line 9: surface 2: it lies where the surface of line 8: surface 1"));
+  EXPECT_EQ(vs3_error(kVertices + surface + "S 2 4 3 2 1 0 0 .9\n"), "none");  // a plate's other face
   EXPECT_THAT(vs3_error("F 3a\nS 1 R 0 0 .9 a\n"), HasSubstr("file ends"));
   EXPECT_THAT(vs3_error("F 3a\nS 1 Z 0 0 .9 a\n0 0 0 0 0 1 1\n"), HasSubstr("shape \"Z\""));
 }
@@ -98,10 +101,12 @@ std::string json_error(const std::string& text) {
 
 const std::string kSquare = R"({"type":"polygon","vertices":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]})";
 
+const std::string kOther = R"({"type":"polygon","vertices":[[0,0,1],[1,0,1],[1,1,1],[0,1,1]]})";
+
 TEST(FormFactorJson, PairsAndModels) {
   const Result<FormFactorInput> input = parse_form_factor_json(
       R"({"cases":[{"id":"a","from":{"type":"point","position":[0,0,0],"normal":[0,0,2]},"to":)" + kSquare +
-          R"(,"occluders":[)" + kSquare + R"(]},{"surfaces":[)" + kSquare + "," + kSquare +
+          R"(,"occluders":[)" + kSquare + R"(]},{"surfaces":[)" + kSquare + "," + kOther +
           R"(],"occluders":[]},{"from":{"type":"disk","centre":[0,0,0],"normal":[1,0,0],"radius":2},"to":)"
           R"({"type":"sphere","centre":[0,0,0],"radius":3,"side":"inside"}}]})",
       "a.json");

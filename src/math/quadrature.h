@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <queue>
 #include <span>
 
@@ -25,8 +26,9 @@ struct Estimate {
 
 /// Gauss's 7-point rule inside Kronrod's 15-point rule on [a, b]: exact to degree 22. The error is the
 /// difference of both, which is that of the poorer one.
+/// `rounding` is given what rounding may do to it.
 template <typename Function>
-Estimate gauss_kronrod(const Function& f, double a, double b) {
+Estimate gauss_kronrod(const Function& f, double a, double b, double* rounding = nullptr) {
   constexpr std::array<double, 8> kNodes{
       0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
       0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
@@ -42,12 +44,14 @@ Estimate gauss_kronrod(const Function& f, double a, double b) {
       0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
   const double centre = f(middle);
-  double kronrod = kKronrod[7] * centre, gauss = kGauss[3] * centre;
+  double kronrod = kKronrod[7] * centre, gauss = kGauss[3] * centre, size = std::abs(kronrod);
   for (size_t i = 0; i < 7; ++i) {
     const double pair = f(middle - half * kNodes[i]) + f(middle + half * kNodes[i]);
     kronrod += kKronrod[i] * pair;
+    size += kKronrod[i] * std::abs(pair);
     if (i % 2 == 1) gauss += kGauss[i / 2] * pair;
   }
+  if (rounding != nullptr) *rounding = 32 * std::numeric_limits<double>::epsilon() * std::abs(half) * size;
   return {half * kronrod, std::abs(half * (kronrod - gauss))};
 }
 
@@ -56,8 +60,10 @@ Estimate gauss_kronrod(const Function& f, double a, double b) {
 /// is not sure then stays in the error.
 template <typename Function>
 Estimate integrate(const Function& f, double a, double b, double tolerance, int depth = 48) {
-  const Estimate whole = gauss_kronrod(f, a, b);
-  if (whole.error <= tolerance || depth == 0) return whole;
+  double rounding = 0;
+  const Estimate whole = gauss_kronrod(f, a, b, &rounding);
+  // Halving what is rounding already would go on for ever.
+  if (whole.error <= std::max(tolerance, rounding) || depth == 0) return whole;
   const double middle = 0.5 * (a + b);
   // Half the tolerance would be fair to smooth functions; towards a singular end nearly all of it is needed
   // by one half.

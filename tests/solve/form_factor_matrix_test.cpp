@@ -82,6 +82,9 @@ TEST(FormFactorMatrix, RaysAgreeWithTheExactMatrixWithinWhatTheySay) {
 TEST(FormFactorMatrix, RowsAndTheirSurroundingsSumToOne) {
   PatchModel model = room(4);
   model.patches.erase(model.patches.begin() + 5, model.patches.begin() + 16);  // a hole
+  // Sheets that only block, one each way round: they take what meets them from either side.
+  const Polygon sheet = rectangle({0.3, 0.2, 0.4}, {0.5, 0, 0.1}, {0, 0.4, 0});
+  model.occluders = {sheet, rectangle({0.6, 0.7, 0.1}, {0, 0, 0.7}, {0.2, 0.1, 0})};
   MatrixOptions options;
   options.method = MatrixMethod::kRays;
   const FormFactorMatrix matrix = built(model, options);

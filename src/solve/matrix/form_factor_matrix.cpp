@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "math/form_factor.h"
+#include "math/oriented_box.h"
 #include "math/polygon_exchange.h"
 #include "visibility/hemicube.h"
 #include "visibility/ray_caster.h"
@@ -206,21 +207,23 @@ class PairTracer {
   // Shares of i's cosine-distributed rays that meet nothing and that meet a back.
   void look_around(uint32_t i, float& environment, float& back) const {
     const TracedPatch& patch = patches_[i];
-    const vec3 side = normalize(std::abs(patch.normal.x) < 0.7f ? cross(patch.normal, vec3(1, 0, 0))
-                                                                : cross(patch.normal, vec3(0, 1, 0)));
-    const vec3 up = cross(patch.normal, side);
+    const mat3 frame = frame_about(patch.normal);
     uint32_t missed = 0, behind = 0;
     for (uint32_t k = 0; k < options_.environment_rays; ++k) {
       const auto [place, direction] = r4_point(k, hash(i, options_.seed));
       const float r = std::sqrt(direction.u), turn = 2 * kPi * direction.v;
       Ray ray;
-      ray.direction = r * (std::cos(turn) * side + std::sin(turn) * up) +
-                      std::sqrt(std::max(0.0f, 1 - direction.u)) * patch.normal;
+      ray.direction =
+          frame * vec3(r * std::cos(turn), r * std::sin(turn), std::sqrt(std::max(0.0f, 1 - direction.u)));
       ray.origin = patch.sample(place.u, place.v) + caster_.epsilon() * patch.normal;
       const Hit hit = caster_.closest(ray);
-      if (hit.missed()) ++missed;
-      // Of two opposite faces in one place the ray meets either.
-      if (!hit.missed() && dot(hit.normal, ray.direction) > 0 && !has_twin(hit.triangle)) ++behind;
+      if (hit.missed()) {
+        ++missed;
+      } else if (patch_of_triangle_[hit.triangle] == kOccluder) {
+        ++behind;  // what only blocks has no front
+      } else if (dot(hit.normal, ray.direction) > 0 && !has_twin(hit.triangle)) {
+        ++behind;  // of two opposite faces in one place the ray meets either
+      }
     }
     const auto count = static_cast<float>(std::max(1u, options_.environment_rays));
     environment = static_cast<float>(missed) / count;
@@ -310,9 +313,7 @@ class MatrixBuilder {
   MatrixBuilder(const PatchModel& model, const MatrixOptions& options, const CancelToken& cancel,
                 const std::function<void(double)>& progress)
       : model_(model), options_(options), cancel_(cancel), progress_(progress), tracer_(model, options) {
-    if (scans_rows(options.method)) {
-      grid_.emplace(grid_of(options));
-    }
+    if (scans_rows(options.method)) grid_.emplace(grid_of(options));
     exact_ = options.method == MatrixMethod::kExact ||
              (options.method == MatrixMethod::kAuto &&
               model.patches.size() + model.occluders.size() <= kMostExact);
@@ -525,7 +526,7 @@ double enforce_reciprocity(FormFactorMatrix& matrix) {
 
 Result<double> enforce_closure(FormFactorMatrix& matrix) {
   constexpr int kMostRounds = 10000;
-  constexpr double kClosed = 1e-12;
+  constexpr double kClosed = 1e-12, kCloseEnough = 1e-9;
   const size_t n = matrix.size();
   const bool symmetric = matrix.reverse.empty();
   std::vector<double> wanted(n), scale(n, 1.0), sums;
@@ -557,6 +558,12 @@ Result<double> enforce_closure(FormFactorMatrix& matrix) {
       scale[i] *= symmetric ? std::sqrt(wanted[i] / sums[i]) : wanted[i] / sums[i];
     }
   }
+  if (off > kCloseEnough)
+    return Error{ErrorCode::kLimit,
+                 fmt::format("rows stay {:.1e} off one after {} rounds of scaling", off, kMostRounds),
+                 {},
+                 {},
+                 "leave out --enforce-closure, or cast more rays"};
   double change = 0;
   for (size_t i = 0; i < n; ++i)
     for (uint64_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {

@@ -30,7 +30,7 @@ constexpr size_t kMostExact = 100;
 struct MatrixOptions {
   MatrixMethod method = MatrixMethod::kAuto;
   CubatureLimits limits{1e-4, 1e-9, 40000};  ///< exact; the absolute one of a patch's area
-  uint32_t rays = 16;                        ///< a pair
+  uint32_t rays = 16;                        ///< a pair, 1..64
   uint32_t resolution = 64;                  ///< of hemicubes and their kin, cells
   uint32_t samples_across = 2;               ///< of a cell: 1 through its middle, k for k x k jittered rays
   double plane_half_width = 4;               ///< of single planes, in units of their height
@@ -50,7 +50,8 @@ struct FormFactorMatrix {
                                  ///< item buffers without what their few points miss of a patch
   std::vector<FormFactorMethod> method;
 
-  /// Shares of what leaves a patch that meet nothing, and that meet the back of something: by rays.
+  /// Shares of what leaves a patch that meet nothing, and that meet the back of something or an occluder: by
+  /// rays.
   std::vector<float> environment, back;
   float share_error = 0;  ///< two standard errors of these, at most
   uint64_t rays = 0;
@@ -74,7 +75,7 @@ double enforce_reciprocity(FormFactorMatrix& matrix);
 /// Scales exchanges so that each row and what its environment and backs take sum to one, both ways alike: the
 /// matrix stays symmetric if it is, and no entry changes its sign (Sinkhorn 1967; rows that were found one by
 /// one are scaled one by one). Returns the largest relative change of an entry, or an error where no scaling
-/// does it: a row without entries.
+/// does it: a row without entries, or rows that do not come together.
 Result<double> enforce_closure(FormFactorMatrix& matrix);
 
 }  // namespace goldthread

@@ -13,6 +13,8 @@
 #include <csetjmp>
 #include <cstring>
 
+#include "base/huge_pages.h"
+
 namespace goldthread {
 namespace {
 
@@ -36,7 +38,7 @@ Image blank(uint64_t width, uint64_t height) {
   Image image;
   image.width = uint32_t(width);
   image.height = uint32_t(height);
-  image.rgba.resize(width * height * 4);
+  image.rgba = zeros_in_huge_pages<uint8_t>(width * height * 4);
   return image;
 }
 

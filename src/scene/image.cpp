@@ -53,30 +53,51 @@ std::array<float, 256> table_of(const Decode& decode) {
 const std::array<float, 256> kShares = table_of([](float share) { return share; });
 const std::array<float, 256> kLinear = table_of(srgb_to_linear);
 
-inline vec4 texel_at(const Image& image, uint32_t x, uint32_t y, bool srgb) {
-  const uint8_t* t = &image.rgba[(size_t(y) * image.width + x) * 4];
+/// Where in an image a lookup finds its four texels, and their weights.
+struct Footprint {
+  const uint8_t *top = nullptr, *bottom = nullptr;  ///< rows; null where there is no image
+  Neighbours u{0, 0, 0}, v{0, 0, 0};
+};
+
+Footprint footprint(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
+  Footprint f;
+  if (!texture.present() || size_t(texture.image) >= images.size()) return f;
+  const Image& image = images[size_t(texture.image)];
+  if (image.empty()) return f;
+  const vec2 at = placed(texture, uv);
+  f.u = neighbours(at.x, image.width, texture.wrap_u);
+  f.v = neighbours(at.y, image.height, texture.wrap_v);
+  f.top = &image.rgba[size_t(f.v.first) * image.width * 4];
+  f.bottom = &image.rgba[size_t(f.v.second) * image.width * 4];
+  return f;
+}
+
+inline vec4 texel_at(const uint8_t* row, uint32_t x, bool srgb) {
+  const uint8_t* t = row + size_t(x) * 4;
   const std::array<float, 256>& colour = srgb ? kLinear : kShares;
   return {colour[t[0]], colour[t[1]], colour[t[2]], kShares[t[3]]};
 }
 
 vec4 sample(const Texture& texture, const std::vector<Image>& images, vec2 uv, bool srgb) {
-  if (!texture.present() || size_t(texture.image) >= images.size()) return vec4(1);
-  const Image& image = images[size_t(texture.image)];
-  if (image.empty()) return vec4(1);
-  const vec2 at = placed(texture, uv);
-  const Neighbours u = neighbours(at.x, image.width, texture.wrap_u);
-  const Neighbours v = neighbours(at.y, image.height, texture.wrap_v);
-  const vec4 top =
-      glm::mix(texel_at(image, u.first, v.first, srgb), texel_at(image, u.second, v.first, srgb), u.weight);
-  const vec4 bottom =
-      glm::mix(texel_at(image, u.first, v.second, srgb), texel_at(image, u.second, v.second, srgb), u.weight);
-  return glm::mix(top, bottom, v.weight);
+  const Footprint f = footprint(texture, images, uv);
+  if (f.top == nullptr) return vec4(1);
+  const auto mixed = [&](const uint8_t* row) {
+    return glm::mix(texel_at(row, f.u.first, srgb), texel_at(row, f.u.second, srgb), f.u.weight);
+  };
+  return glm::mix(mixed(f.top), mixed(f.bottom), f.v.weight);
 }
 
 }  // namespace
 
 vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
   return sample(texture, images, uv, true);
+}
+
+void prefetch_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
+  const Footprint f = footprint(texture, images, uv);
+  if (f.top == nullptr) return;
+  __builtin_prefetch(f.top + size_t(f.u.first) * 4);
+  __builtin_prefetch(f.bottom + size_t(f.u.first) * 4);
 }
 
 vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {

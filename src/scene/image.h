@@ -43,4 +43,7 @@ vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, ve
 /// The same without the sRGB decoding, for data textures (metallic, roughness).
 vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
 
+/// Asks memory for what either lookup will read, and does not wait for it.
+void prefetch_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
+
 }  // namespace goldthread

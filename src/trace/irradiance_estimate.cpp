@@ -1,6 +1,7 @@
 #include "trace/irradiance_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -14,7 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSliceSeconds = 0.2;  ///< of work between two looks at the clock
-constexpr uint64_t kTimedPaths = 64;   ///< one path in so many has its rays timed
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -47,6 +47,31 @@ double relative_error(const IrradianceSums& sums) {
   }
   return std::sqrt(squares / (kBatches * (kBatches - 1))) / mean;
 }
+
+/// Samples that are traced together, each added to the sum that it is for.
+class Samples {
+ public:
+  Samples(const PathTracer& tracer, RayCount& count) : tracer_(tracer), count_(count) {}
+
+  bool full() const { return size_ == PathTracer::kBundle; }
+  void add(const Receiver& receiver, PathSeed seed, dvec3& sum) {
+    starts_[size_] = {receiver.origin, receiver.normal, seed};
+    sums_[size_++] = &sum;
+  }
+  void trace() {
+    tracer_.irradiance({starts_.data(), size_}, {lux_.data(), size_}, count_);
+    for (size_t i = 0; i < size_; ++i) *sums_[i] += dvec3(lux_[i]);
+    size_ = 0;
+  }
+
+ private:
+  const PathTracer& tracer_;
+  RayCount& count_;
+  size_t size_ = 0;
+  std::array<PathStart, PathTracer::kBundle> starts_;
+  std::array<dvec3*, PathTracer::kBundle> sums_{};
+  std::array<vec3, PathTracer::kBundle> lux_;
+};
 
 }  // namespace
 
@@ -136,31 +161,44 @@ bool IrradianceEstimate::trace_round(const Round& round, double deadline_seconds
   return true;
 }
 
-// Points, and the batches of each, are work of their own: so that few points keep all threads busy, too. A
-// slice that is interrupted is forgotten, for a point's batches must have the same number of samples.
+// A sequence of a point is an item: so that few points keep all threads busy, too. Its samples add up in
+// their order, whatever else goes in the same bundle. A slice that is interrupted is forgotten, for a point's
+// batches must have the same number of samples.
 bool IrradianceEstimate::trace_slice(const Round& round, size_t first, size_t last,
                                      const std::function<bool()>& stop) {
   const size_t count = (last - first) * kBatches;
   std::vector<dvec3> sums(count);
-  std::vector<RayCount> rays(count);
+  std::vector<uint64_t> wanted(count);
+  for (size_t item = 0; item < count; ++item) {
+    const IrradianceSums& point = sums_[first + item / kBatches];
+    sums[item] = point.batches[item % kBatches];
+    wanted[item] = (round.samples - std::min(round.samples, point.samples)) / kBatches;
+  }
+  const uint64_t most = *std::max_element(wanted.begin(), wanted.end());
+  const size_t together = std::max<size_t>(1, PathTracer::kBundle / std::max<uint64_t>(1, most));
+  const size_t groups = (count + together - 1) / together;
+  std::vector<RayCount> rays(groups);
   std::atomic<bool> stopped{false};
-  parallel_for(count, [&](size_t item) {
-    const size_t p = first + item / kBatches, batch = item % kBatches;
-    const uint32_t seed = hash(hash(seed_, static_cast<uint32_t>(p)), static_cast<uint32_t>(batch));
-    dvec3 sum = sums_[p].batches[batch];
-    RayCount ray_count;
-    const uint64_t begin = sums_[p].samples / kBatches;
-    for (uint64_t i = begin; i < round.samples / kBatches; ++i) {
-      if ((i - begin) % 8 == 0 && (stopped || stop())) {
+  parallel_for(groups, [&](size_t group) {
+    Samples samples(tracer_, rays[group]);
+    const auto go_on = [&] {
+      if (stopped || stop()) {
         stopped = true;
-        return;
+        return false;
       }
-      ray_count.timed = (item + i) % kTimedPaths == 0;
-      PathSampler sampler(static_cast<uint32_t>(i), seed);
-      sum += dvec3(tracer_.irradiance(receivers_[p].origin, receivers_[p].normal, sampler, ray_count));
+      samples.trace();
+      return true;
+    };
+    for (size_t item = group * together; item < std::min(count, (group + 1) * together); ++item) {
+      const size_t p = first + item / kBatches, batch = item % kBatches;
+      const uint32_t seed = hash(hash(seed_, static_cast<uint32_t>(p)), static_cast<uint32_t>(batch));
+      const uint64_t begin = sums_[p].samples / kBatches;
+      for (uint64_t i = begin; i < begin + wanted[item]; ++i) {
+        if (samples.full() && !go_on()) return;
+        samples.add(receivers_[p], {static_cast<uint32_t>(i), seed}, sums[item]);
+      }
     }
-    sums[item] = sum;
-    rays[item] = ray_count;
+    go_on();
   });
   for (const RayCount& more : rays) rays_ += more;
   if (stopped) return false;

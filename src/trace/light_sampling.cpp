@@ -25,23 +25,53 @@ vec3 even_direction(SobolPoint p) {
   return vec3(dvec3(radius * std::cos(angle), radius * std::sin(angle), z));
 }
 
-float lamp_cone(const Light& lamp, const vec3& d) {
-  if (lamp.kind != LightKind::kSpot) return 1;
-  // KHR_lights_punctual's own guard against cones without a soft edge.
-  const float outer = std::cos(lamp.outer_cone);
-  const float scale = 1 / std::max(0.001f, std::cos(lamp.inner_cone) - outer);
-  const float edge = std::clamp((dot(d, lamp.direction) - outer) * scale, 0.0f, 1.0f);
+// KHR_lights_punctual's own guard against cones without a soft edge.
+Lamp::Lamp(const Light& light)
+    : light_(light),
+      brightness_(luminance(light.intensity)),
+      cos_outer_(std::cos(light.outer_cone)),
+      cone_scale_(1 / std::max(0.001f, std::cos(light.inner_cone) - cos_outer_)) {}
+
+/// Share of the intensity that goes along unit direction `d`: 1 for a point light; for a spot the square of
+/// (d . axis - cos outer) / (cos inner - cos outer), clamped to 0..1 (KHR_lights_punctual).
+float Lamp::cone(const vec3& d) const {
+  if (light_.kind != LightKind::kSpot) return 1;
+  const float edge = std::clamp((dot(d, light_.direction) - cos_outer_) * cone_scale_, 0.0f, 1.0f);
   return edge * edge;
 }
 
-float lamp_range(const Light& lamp, float distance) {
-  if (lamp.range <= 0) return 1;
-  return std::clamp(1 - std::pow(distance / lamp.range, 4.0f), 0.0f, 1.0f);
+/// What KHR_lights_punctual's range leaves at `distance` metres: 1 - (distance / range)^4, at least 0.
+float Lamp::reach(float distance) const {
+  if (light_.range <= 0) return 1;
+  const float share = distance / light_.range, squared = share * share;
+  return std::clamp(1 - squared * squared, 0.0f, 1.0f);
+}
+
+float Lamp::share_at(const vec3& origin, const vec3& normal) const {
+  if (light_.kind == LightKind::kDirectional) return std::max(0.0f, -dot(light_.direction, normal));
+  const vec3 d = light_.position - origin;
+  const float height = dot(d, normal);
+  if (!(height > 0)) return 0;
+  const float squared = dot(d, d), distance = std::sqrt(squared);
+  return height * cone(-d / distance) * reach(distance) / (squared * distance);
+}
+
+LightSample Lamp::light_at(const vec3& origin, const vec3& normal) const {
+  LightSample light;
+  light.irradiance = light_.intensity * share_at(origin, normal);
+  light.shadow.origin = origin;
+  if (light_.kind == LightKind::kDirectional) {
+    light.shadow.direction = -light_.direction;
+  } else {
+    light.shadow.direction = light_.position - origin;
+    light.shadow.far = 0.9999f;  // a lamp may be fixed to a surface
+  }
+  return light;
 }
 
 LightSampler::LightSampler(const TracedScene& scene) : scene_(scene), emitters_(scene) {
   for (const Light& lamp : scene.scene().lights)
-    if (luminance(lamp.intensity) > 0) lamps_.push_back(lamp);
+    if (luminance(lamp.intensity) > 0) lamps_.emplace_back(lamp);
 }
 
 LightSample LightSampler::sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const {
@@ -54,6 +84,7 @@ LightSample LightSampler::sample_emitter(const vec3& origin, const vec3& normal,
   const vec3 front = turned ? -emitter.normal : emitter.normal;
   const float at_receiver = dot(normal, d) / distance, at_emitter = -dot(front, d) / distance;
   if (!(at_receiver > 0) || !(at_emitter > 0)) return light;
+  light.cosine = at_receiver;
   light.density = emitter.density * squared / at_emitter;
   light.irradiance = emitters_.nits(emitter, weights) * (at_receiver / light.density);
   light.shadow.origin = origin;
@@ -70,48 +101,27 @@ LightSample LightSampler::sample_sky(const vec3& origin, const vec3& normal, Sob
   LightSample light;
   light.shadow.origin = origin;
   light.shadow.direction = cosine_direction(normal, p);
-  light.density = sky_density(std::max(0.0f, dot(normal, light.shadow.direction)));
+  light.cosine = std::max(0.0f, dot(normal, light.shadow.direction));
+  light.density = sky_density(light.cosine);
   light.irradiance = kPi * scene_.scene().sky.radiance;
   return light;
 }
 
-LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, double u) const {
-  double total = 0;
-  for (const Light& lamp : lamps_)
-    total += static_cast<double>(luminance(lamp_light(lamp, origin, normal).irradiance));
+LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, double u,
+                                      std::span<float> sums) const {
+  float total = 0;
+  for (size_t i = 0; i < lamps_.size(); ++i) {
+    total += lamps_[i].brightness() * lamps_[i].share_at(origin, normal);
+    sums[i] = total;
+  }
   if (!(total > 0)) return {};
-  double left = u * total;
-  LightSample chosen;
-  double brings = 0;
-  for (const Light& lamp : lamps_) {
-    const LightSample light = lamp_light(lamp, origin, normal);
-    const auto share = static_cast<double>(luminance(light.irradiance));
-    if (!(share > 0)) continue;
-    chosen = light;
-    brings = share;
-    if (left < share) break;
-    left -= share;
-  }
-  chosen.irradiance *= static_cast<float>(total / brings);
-  return chosen;
-}
-
-LightSample LightSampler::lamp_light(const Light& lamp, const vec3& origin, const vec3& normal) const {
-  LightSample light;
-  light.shadow.origin = origin;
-  if (lamp.kind == LightKind::kDirectional) {
-    light.shadow.direction = -lamp.direction;
-    light.irradiance = lamp.intensity * std::max(0.0f, -dot(lamp.direction, normal));
-    return light;
-  }
-  const vec3 d = lamp.position - origin;
-  const float squared = dot(d, d), distance = std::sqrt(squared);
-  if (!(distance > 0)) return light;
-  const float cosine = std::max(0.0f, dot(d, normal) / distance);
-  light.shadow.direction = d;
-  light.shadow.far = 0.9999f;  // a lamp may be fixed to a surface
-  light.irradiance =
-      lamp.intensity * (cosine * lamp_cone(lamp, -d / distance) * lamp_range(lamp, distance) / squared);
+  // The first whose sum is above, and the last that brings anything where rounding leaves none.
+  const auto wanted = static_cast<float>(u * static_cast<double>(total));
+  size_t chosen = 0;
+  while (chosen + 1 < lamps_.size() && sums[chosen] <= wanted && sums[chosen] < total) ++chosen;
+  const float before = chosen > 0 ? sums[chosen - 1] : 0.0f;
+  LightSample light = lamps_[chosen].light_at(origin, normal);
+  light.irradiance *= total / (sums[chosen] - before);
   return light;
 }
 

@@ -1,6 +1,9 @@
 // The light that reaches a point directly, one sample at a time, and the densities that multiple importance
 // sampling weighs samples by (Veach and Guibas 1995).
 #pragma once
+#include <span>
+#include <vector>
+
 #include "trace/emitter_table.h"
 #include "trace/scrambled_sobol.h"
 #include "trace/traced_scene.h"
@@ -11,6 +14,7 @@ namespace goldthread {
 struct LightSample {
   vec3 irradiance{0};  ///< lux: what it brings unless something is in between, over the sample's density
   Ray shadow;          ///< from the point to the light
+  float cosine = 0;    ///< between that way and the receiver's normal; of what has a density
   float density = 0;   ///< of its direction, 1/sr; 0 for lamps, which no other strategy can find
 };
 
@@ -27,11 +31,25 @@ inline float power_heuristic(float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Share of a lamp's intensity that goes along unit direction `d`: 1 for a point light; for a spot the square
-/// of (d . axis - cos outer) / (cos inner - cos outer), clamped to 0..1 (KHR_lights_punctual).
-float lamp_cone(const Light& lamp, const vec3& d);
-/// What KHR_lights_punctual's range leaves at `distance` metres: 1 - (distance / range)^4, at least 0.
-float lamp_range(const Light& lamp, float distance);
+/// A point, spot or directional light, with what its cone needs of sines and cosines worked out.
+class Lamp {
+ public:
+  explicit Lamp(const Light& light);
+
+  /// Share of the intensity that it brings to a plane of unit `normal` unless something is in between, 1/m2;
+  /// of the illuminance, if it is directional.
+  float share_at(const vec3& origin, const vec3& normal) const;
+  /// The same as light, and the way there.
+  LightSample light_at(const vec3& origin, const vec3& normal) const;
+  float brightness() const { return brightness_; }  ///< luminance of the intensity
+
+ private:
+  float cone(const vec3& d) const;
+  float reach(float distance) const;
+
+  Light light_;
+  float brightness_, cos_outer_, cone_scale_;
+};
 
 /// Draws light for points of a scene, which must outlive it.
 class LightSampler {
@@ -41,14 +59,16 @@ class LightSampler {
   bool has_emitters() const { return !emitters_.empty(); }
   bool has_sky() const { return scene_.scene().sky.present(); }
   bool has_lamps() const { return !lamps_.empty(); }
+  size_t lamp_count() const { return lamps_.size(); }
 
   /// One point of one emitting triangle, drawn by power. `origin` is off its surface already; `normal` is
   /// unit.
   LightSample sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const;
   /// One direction to the sky: it is even, so that the cosine alone is worth following.
   LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  /// One point, spot or directional light, drawn by what it would bring were nothing in between.
-  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u) const;
+  /// One point, spot or directional light, drawn by what it would bring were nothing in between. `sums` is
+  /// room to work in, lamp_count() long.
+  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u, std::span<float> sums) const;
 
   /// Density, 1/sr, with which sample_emitter takes the direction in which a ray has met an emitter after
   /// `distance` metres at the given cosine between ray and normal.
@@ -57,11 +77,9 @@ class LightSampler {
   float sky_density(float cosine) const { return has_sky() ? cosine / kPi : 0.0f; }
 
  private:
-  LightSample lamp_light(const Light& lamp, const vec3& origin, const vec3& normal) const;
-
   const TracedScene& scene_;
   EmitterTable emitters_;
-  std::vector<Light> lamps_;  ///< those that shine
+  std::vector<Lamp> lamps_;  ///< those that shine
 };
 
 }  // namespace goldthread

@@ -4,6 +4,10 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <type_traits>
+#include <vector>
+
+#include "base/check.h"
 
 namespace goldthread {
 namespace {
@@ -12,6 +16,8 @@ namespace {
 // live.
 constexpr int kSureBounces = 3;
 constexpr float kMostSurvival = 0.95f;
+
+constexpr size_t kBundle = PathTracer::kBundle;
 
 float largest(const vec3& v) {
   return std::max({v.x, v.y, v.z});
@@ -23,37 +29,239 @@ int64_t nanoseconds_since(Clock::time_point begin) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
 }
 
-/// What reading the clock takes: as much as a tenth of a ray.
-int64_t clock_nanoseconds() {
-  std::array<int64_t, 101> readings{};
-  for (int64_t& reading : readings) reading = nanoseconds_since(Clock::now());
-  std::nth_element(readings.begin(), readings.begin() + readings.size() / 2, readings.end());
-  return readings[readings.size() / 2];
+/// Up to N of something, in place, none of them made before it is there.
+template <typename T, size_t N>
+class Few {
+ public:
+  void clear() { size_ = 0; }
+  void push_back(const T& item) { storage_.items[size_++] = item; }
+  void resize(size_t size) { size_ = size; }
+  size_t size() const { return size_; }
+  T& operator[](size_t i) { return storage_.items[i]; }
+  std::span<T> all() { return {storage_.items.data(), size_}; }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<T>);
+  union Storage {
+    Storage() {}
+    std::array<T, N> items;
+  } storage_;
+  size_t size_ = 0;
+};
+
+/// Where a path has got to.
+struct Path {
+  vec3 point{0};   ///< on a surface
+  vec3 origin{0};  ///< a little above, where its rays start
+  vec3 normal{0};  ///< unit
+  vec3 throughput{1};
+  uint32_t slot = 0;  ///< whose sum its light goes to
+};
+
+/// Light that is there unless something is in between.
+struct Promise {
+  vec3 lux{0};
+  uint32_t slot = 0;
+};
+
+/// Some paths on the same bounce.
+class Bundle {
+ public:
+  Bundle(const TracedScene& scene, const LightSampler& lights, RayCount& count)
+      : scene_(scene), lights_(lights), count_(count), lamp_sums_(lights.lamp_count()) {}
+
+  /// Adds what each start receives to `sums`. At most kBundle starts.
+  void trace(std::span<const PathStart> starts, std::span<vec3> sums);
+  /// Where rays end.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits);
+
+ private:
+  void draw(uint32_t& pair, Few<SobolPoint, kBundle>& points) {
+    points.resize(paths_.size());
+    path_points(seeds_.all(), ++pair, points.all());
+  }
+  void ask_emitters(uint32_t& pair);
+  void ask_sky(uint32_t& pair);
+  void ask_lamps();
+  void ask(const Path& path, const LightSample& light);
+  void collect(std::span<vec3> sums);
+  void send_on(uint32_t& pair);
+  void bounce(bool sure, std::span<vec3> sums);
+  bool arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) const;
+  vec3 emission_found(const Path& path, const Ray& ray, const Meeting& met) const;
+
+  const TracedScene& scene_;
+  const LightSampler& lights_;
+  RayCount& count_;
+  Few<Path, kBundle> paths_;
+  Few<PathSeed, kBundle> seeds_;  ///< of paths_
+  Few<SobolPoint, kBundle> choices_, points_;
+  Few<Ray, kBundle> rays_;
+  Few<Hit, kBundle> hits_;
+  Few<Meeting, kBundle> meetings_;
+  Few<Ray, 3 * kBundle> shadows_;
+  Few<Promise, 3 * kBundle> promises_;  ///< of shadows_
+  Few<float, 3 * kBundle> passed_;      ///< of shadows_
+  std::vector<float> lamp_sums_;
+};
+
+void Bundle::closest(std::span<const Ray> rays, std::span<Hit> hits) {
+  const auto begin = Clock::now();
+  scene_.caster().closest(rays, hits);
+  count_.ray_nanoseconds += nanoseconds_since(begin);
+  count_.rays += rays.size();
 }
 
-const int64_t kClockNanoseconds = clock_nanoseconds();
-
-/// Runs `trace` as one ray, timed where the count asks for it.
-template <typename Trace>
-auto counted_ray(RayCount& count, const Trace& trace) {
-  ++count.rays;
-  if (!count.timed) return trace();
-  const auto begin = Clock::now();
-  auto result = trace();
-  count.ray_nanoseconds += nanoseconds_since(begin) - kClockNanoseconds;
-  return result;
+// E = integral of L cos = E[pi L] over cosine-distributed directions, and the L that comes back from a
+// diffuse surface is rho E / pi: so a path's throughput, relative to irradiance, is the product of
+// reflectances.
+void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
+  paths_.clear();
+  seeds_.clear();
+  for (const PathStart& start : starts) {
+    const vec3 point = start.origin - scene_.epsilon() * start.normal;
+    const auto slot = static_cast<uint32_t>(paths_.size());
+    paths_.push_back({point, start.origin, start.normal, vec3(1), slot});
+    seeds_.push_back(start.seed);
+  }
+  uint32_t pair = kLensPair;
+  for (int number = 1; paths_.size() > 0; ++number) {
+    const bool sure = number < kSureBounces;
+    if (!sure || lights_.has_lamps()) draw(pair, choices_);
+    shadows_.clear();
+    promises_.clear();
+    if (lights_.has_emitters()) ask_emitters(pair);
+    if (lights_.has_sky()) ask_sky(pair);
+    if (lights_.has_lamps()) ask_lamps();
+    collect(sums);
+    send_on(pair);
+    bounce(sure, sums);
+  }
 }
 
-/// Runs `trace` as one path; what its rays' clocks took is no part of it.
-template <typename Trace>
-vec3 counted_path(RayCount& count, const Trace& trace) {
-  if (!count.timed) return trace();
-  const uint64_t rays = count.rays;
+void Bundle::ask_emitters(uint32_t& pair) {
+  draw(pair, points_);
+  for (size_t i = 0; i < paths_.size(); ++i)
+    ask(paths_[i], lights_.sample_emitter(paths_[i].point, paths_[i].normal, points_[i]));
+}
+
+void Bundle::ask_sky(uint32_t& pair) {
+  draw(pair, points_);
+  for (size_t i = 0; i < paths_.size(); ++i)
+    ask(paths_[i], lights_.sample_sky(paths_[i].point, paths_[i].normal, points_[i]));
+}
+
+void Bundle::ask_lamps() {
+  for (size_t i = 0; i < paths_.size(); ++i)
+    ask(paths_[i],
+        lights_.sample_lamp(paths_[i].point, paths_[i].normal, unit_double(choices_[i].u), lamp_sums_));
+}
+
+void Bundle::ask(const Path& path, const LightSample& light) {
+  if (!(largest(light.irradiance) > 0)) return;
+  const float weight = light.density > 0 ? power_heuristic(light.density, light.cosine / kPi) : 1.0f;
+  // What it brings is that of the point; the ray that asks starts above it and ends where it would.
+  Ray shadow = light.shadow;
+  shadow.origin = path.origin;
+  if (std::isfinite(shadow.far)) shadow.direction += path.point - path.origin;
+  shadows_.push_back(shadow);
+  promises_.push_back({path.throughput * light.irradiance * weight, path.slot});
+}
+
+void Bundle::collect(std::span<vec3> sums) {
+  passed_.resize(shadows_.size());
   const auto begin = Clock::now();
-  const vec3 result = trace();
-  const int64_t clocks = 2 * static_cast<int64_t>(count.rays - rays) + 1;
-  count.path_nanoseconds += nanoseconds_since(begin) - clocks * kClockNanoseconds;
-  return result;
+  scene_.caster().transmittance(shadows_.all(), passed_.all());
+  count_.ray_nanoseconds += nanoseconds_since(begin);
+  count_.rays += shadows_.size();
+  for (size_t i = 0; i < promises_.size(); ++i) sums[promises_[i].slot] += promises_[i].lux * passed_[i];
+}
+
+void Bundle::send_on(uint32_t& pair) {
+  draw(pair, points_);
+  rays_.resize(paths_.size());
+  hits_.resize(paths_.size());
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    rays_[i] = Ray();
+    rays_[i].origin = paths_[i].origin;
+    rays_[i].direction = cosine_direction(paths_[i].normal, points_[i]);
+  }
+  closest(rays_.all(), hits_.all());
+}
+
+/// Adds what was met to the sums, and keeps those paths that go on. What is read of each is asked for while
+/// others are worked on.
+void Bundle::bounce(bool sure, std::span<vec3> sums) {
+  for (const Hit& hit : hits_.all()) scene_.prefetch(hit);
+  meetings_.resize(paths_.size());
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    scene_.meet(rays_[i], hits_[i], meetings_[i]);
+    if (meetings_[i].live) scene_.prefetch_texcoords(meetings_[i].triangle);
+  }
+  for (const Meeting& met : meetings_.all())
+    if (met.live) scene_.prefetch_texels(met.triangle, met.weights);
+  size_t kept = 0;
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    Path path = paths_[i];
+    if (!arrive(rays_[i], meetings_[i], path, sums[path.slot])) continue;
+    if (!sure) {
+      const float survival = std::min(kMostSurvival, largest(path.throughput));
+      if (unit_double(choices_[i].v) >= static_cast<double>(survival)) continue;
+      path.throughput /= survival;
+    }
+    paths_[kept] = path;
+    seeds_[kept] = seeds_[i];
+    ++kept;
+  }
+  paths_.resize(kept);
+  seeds_.resize(kept);
+}
+
+// A ray that starts a little above its point meets y with another density than one from the point itself
+// would: cos cos' / r² of the one over that of the other makes up for it. Without, light from close by would
+// be off by the lift over the distance, twice. Nought where the point does not see y.
+float density_ratio(const Path& path, const Ray& ray, const Meeting& met, float epsilon) {
+  // In a corner, a few lifts from the walls, the ratio is anything; and there all looks the same from a
+  // little further off, so that nothing has to be made up for.
+  if (met.distance < 32 * epsilon) return 1;
+  const vec3 d = ray.origin + met.distance * ray.direction - path.point;
+  const float squared = dot(d, d), lifted_squared = met.distance * met.distance;
+  const float cosines = dot(path.normal, d) * -dot(met.normal, d);
+  const float lifted_cosines = dot(path.normal, ray.direction) * -dot(met.normal, ray.direction);
+  if (!(dot(path.normal, d) > 0) || !(cosines > 0) || !(lifted_cosines > 0)) return 0;
+  return cosines * lifted_squared / (lifted_cosines * squared * squared);
+}
+
+/// The other half of direct light: what bounces find by themselves, weighed against sample_emitter.
+vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met) const {
+  const vec3 nits = scene_.emission(met.triangle, met.weights);
+  if (!(largest(nits) > 0)) return vec3(0);
+  const vec3 d = ray.origin + met.distance * ray.direction - path.point;
+  const float distance = length(d);
+  const float cosine = dot(path.normal, d) / distance, cosine_there = -dot(met.normal, d) / distance;
+  const float density = lights_.emitter_density(met.triangle, distance, cosine_there);
+  return kPi * power_heuristic(cosine / kPi, density) * nits;
+}
+
+/// Moves the path to where its ray has ended; false when it ends there, too.
+bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) const {
+  if (met.missed()) {
+    const float cosine = std::max(0.0f, dot(path.normal, ray.direction));
+    if (lights_.has_sky())
+      sum += path.throughput * (kPi * power_heuristic(cosine / kPi, lights_.sky_density(cosine))) *
+             scene_.scene().sky.radiance;
+    return false;
+  }
+  if (!met.live) return false;
+  const float share = density_ratio(path, ray, met, scene_.epsilon());
+  if (!(share > 0)) return false;
+  path.throughput *= share;
+  sum += path.throughput * emission_found(path, ray, met);
+  path.throughput *= scene_.reflectance(met.triangle, met.weights);
+  path.point = ray.origin + met.distance * ray.direction;
+  path.normal = met.normal;
+  path.origin = path.point + scene_.epsilon() * path.normal;
+  return largest(path.throughput) > 0;
 }
 
 }  // namespace
@@ -63,120 +271,56 @@ double RayCount::ray_share() const {
   return std::clamp(static_cast<double>(ray_nanoseconds) / static_cast<double>(path_nanoseconds), 0.0, 1.0);
 }
 
-vec3 PathTracer::irradiance(const vec3& origin, const vec3& normal, PathSampler& sampler,
-                            RayCount& count) const {
-  return counted_path(count, [&] { return trace_irradiance(origin, normal, sampler, count); });
-}
-
-vec3 PathTracer::radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const {
-  return counted_path(count, [&] { return trace_radiance(ray, sampler, count); });
-}
-
-Meeting PathTracer::closest(const Ray& ray, RayCount& count) const {
-  return counted_ray(count, [&] { return scene_.closest(ray); });
-}
-
-vec3 PathTracer::arriving(const LightSample& light, const Start& start, RayCount& count) const {
-  if (!(largest(light.irradiance) > 0)) return vec3(0);
-  float weight = 1;
-  if (light.density > 0) {
-    const float cosine = dot(start.normal, light.shadow.direction) / length(light.shadow.direction);
-    weight = power_heuristic(light.density, std::max(0.0f, cosine) / kPi);
+void PathTracer::irradiance(std::span<const PathStart> starts, std::span<vec3> lux, RayCount& count) const {
+  GOLDTHREAD_CHECK_EQ(starts.size(), lux.size());
+  const auto begin = Clock::now();
+  std::fill(lux.begin(), lux.end(), vec3(0));
+  Bundle bundle(scene_, lights_, count);
+  for (size_t first = 0; first < starts.size(); first += kBundle) {
+    const size_t size = std::min(kBundle, starts.size() - first);
+    bundle.trace(starts.subspan(first, size), lux.subspan(first, size));
   }
-  // What it brings is that of the point; the ray that asks starts above it and ends where it would.
-  Ray shadow = light.shadow;
-  shadow.origin = start.origin;
-  if (std::isfinite(shadow.far)) shadow.direction += start.point - start.origin;
-  return light.irradiance * (weight * counted_ray(count, [&] { return scene_.transmittance(shadow); }));
+  count.path_nanoseconds += nanoseconds_since(begin);
 }
 
-vec3 PathTracer::direct(const Start& start, double lamp, PathSampler& sampler, RayCount& count) const {
-  vec3 sum(0);
-  if (lights_.has_emitters())
-    sum += arriving(lights_.sample_emitter(start.point, start.normal, sampler.next()), start, count);
-  if (lights_.has_sky())
-    sum += arriving(lights_.sample_sky(start.point, start.normal, sampler.next()), start, count);
-  if (lights_.has_lamps())
-    sum += arriving(lights_.sample_lamp(start.point, start.normal, lamp), start, count);
-  return sum;
-}
-
-// A ray that starts a little above its point meets y with another density than one from the point itself
-// would: cos cos' / r² of the one over that of the other makes up for it. Without, light from close by would
-// be off by the lift over the distance, twice. Nought where the point does not see y.
-float PathTracer::from_the_point(const Start& start, const Ray& ray, const Meeting& met, float& cosine,
-                                 float& distance, float& cosine_there) const {
-  const vec3 y = ray.origin + met.distance * ray.direction, d = y - start.point;
-  const float lifted = dot(start.normal, ray.direction) * -dot(met.normal, ray.direction) /
-                       std::max(met.distance * met.distance, 1e-30f);
-  distance = length(d);
-  cosine = dot(start.normal, d) / distance;
-  cosine_there = -dot(met.normal, d) / distance;
-  // In a corner, a few lifts from the walls, the ratio is anything; and there all looks the same from a
-  // little further off, so that nothing has to be made up for.
-  if (met.distance < 32 * scene_.epsilon()) return 1;
-  if (!(cosine > 0) || !(cosine_there > 0) || !(lifted > 0)) return 0;
-  return cosine * cosine_there / (distance * distance) / lifted;
-}
-
-// E = integral of L cos = E[pi L] over cosine-distributed directions, and the L that comes back from a
-// diffuse surface is rho E / pi: so a path's throughput, relative to irradiance, is the product of
-// reflectances.
-vec3 PathTracer::trace_irradiance(const vec3& first, const vec3& plane, PathSampler& sampler,
-                                  RayCount& count) const {
-  vec3 sum(0), throughput(1);
-  Start start{first - scene_.epsilon() * plane, first, plane};
-  for (int bounce = 1;; ++bounce) {
-    const bool sure = bounce < kSureBounces;
-    const SobolPoint choices = sure && !lights_.has_lamps() ? SobolPoint{} : sampler.next();
-    sum += throughput * direct(start, unit_double(choices.u), sampler, count);
-    Ray ray;
-    ray.origin = start.origin;
-    ray.direction = cosine_direction(start.normal, sampler.next());
-    const Meeting met = closest(ray, count);
+void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits, RayCount& count) const {
+  GOLDTHREAD_CHECK_EQ(seen.size(), nits.size());
+  const auto begin = Clock::now();
+  Bundle bundle(scene_, lights_, count);
+  std::vector<Ray> rays;
+  std::vector<Hit> hits(seen.size());
+  for (const CameraPath& path : seen) rays.push_back(path.ray);
+  bundle.closest(rays, hits);
+  std::vector<PathStart> starts;
+  std::vector<vec3> reflectance;
+  std::vector<size_t> pixels;
+  for (size_t i = 0; i < seen.size(); ++i) {
+    Ray ray = rays[i];
+    Meeting met;
+    scene_.meet(ray, hits[i], met);
+    while (!met.missed() && !met.live && !scene_.material(met.triangle).unlit) {
+      ray.near = met.distance + 2 * scene_.epsilon();
+      met = scene_.closest(ray);
+      ++count.rays;
+    }
     if (met.missed()) {
-      const float cosine = std::max(0.0f, dot(start.normal, ray.direction));
-      if (lights_.has_sky())
-        sum += throughput * (kPi * power_heuristic(cosine / kPi, lights_.sky_density(cosine))) *
-               scene_.scene().sky.radiance;
-      return sum;
+      nits[i] = scene_.scene().sky.radiance;
+    } else if (scene_.material(met.triangle).unlit) {
+      nits[i] = scene_.unlit_colour(met.triangle, met.weights);
+    } else {
+      nits[i] = scene_.emission(met.triangle, met.weights);
+      const vec3 share = scene_.reflectance(met.triangle, met.weights) / kPi;
+      if (!(largest(share) > 0)) continue;
+      const vec3 point = ray.origin + met.distance * ray.direction;
+      starts.push_back({point + scene_.epsilon() * met.normal, met.normal, seen[i].seed});
+      reflectance.push_back(share);
+      pixels.push_back(i);
     }
-    if (!met.live) return sum;
-    float cosine = 0, distance = 0, cosine_there = 0;
-    const float share = from_the_point(start, ray, met, cosine, distance, cosine_there);
-    if (!(share > 0)) return sum;
-    throughput *= share;
-    const vec3 nits = scene_.emission(met.triangle, met.weights);
-    if (largest(nits) > 0) {
-      const float density = lights_.emitter_density(met.triangle, distance, cosine_there);
-      sum += throughput * (kPi * power_heuristic(cosine / kPi, density)) * nits;
-    }
-    throughput *= scene_.reflectance(met.triangle, met.weights);
-    const float survival = sure ? 1.0f : std::min(kMostSurvival, largest(throughput));
-    if (!(largest(throughput) > 0) || unit_double(choices.v) >= static_cast<double>(survival)) return sum;
-    throughput /= survival;
-    start.point = ray.origin + met.distance * ray.direction;
-    start.normal = met.normal;
-    start.origin = start.point + scene_.epsilon() * start.normal;
   }
-}
-
-vec3 PathTracer::trace_radiance(const Ray& seen, PathSampler& sampler, RayCount& count) const {
-  Ray ray = seen;
-  Meeting met = closest(ray, count);
-  while (!met.missed() && !met.live && !scene_.material(met.triangle).unlit) {
-    ray.near = met.distance + 2 * scene_.epsilon();
-    met = closest(ray, count);
-  }
-  if (met.missed()) return scene_.scene().sky.radiance;
-  if (scene_.material(met.triangle).unlit) return scene_.unlit_colour(met.triangle, met.weights);
-  vec3 nits = scene_.emission(met.triangle, met.weights);
-  const vec3 reflectance = scene_.reflectance(met.triangle, met.weights);
-  if (largest(reflectance) > 0) {
-    const vec3 origin = ray.origin + met.distance * ray.direction + scene_.epsilon() * met.normal;
-    nits += reflectance / kPi * trace_irradiance(origin, met.normal, sampler, count);
-  }
-  return nits;
+  count.path_nanoseconds += nanoseconds_since(begin);
+  std::vector<vec3> lux(starts.size());
+  irradiance(starts, lux, count);
+  for (size_t k = 0; k < pixels.size(); ++k) nits[pixels[k]] += reflectance[k] * lux[k];
 }
 
 }  // namespace goldthread

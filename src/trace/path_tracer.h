@@ -1,7 +1,10 @@
 // Light along random paths: an unbiased estimate of the rendering equation (Kajiya 1986) for diffuse
-// surfaces, one path at a time. Nothing is clamped.
+// surfaces. Nothing is clamped. Paths go in bundles, a bounce of all at a time, so that what one path waits
+// for in memory another uses, and rays leave for the ray caster in one go; what becomes of a path does not
+// depend on those beside it.
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "trace/light_sampling.h"
 #include "trace/scrambled_sobol.h"
@@ -12,9 +15,8 @@ namespace goldthread {
 /// The rays of some paths, and the share of time that went into them.
 struct RayCount {
   uint64_t rays = 0;
-  bool timed = false;            ///< reading clocks costs, so only some paths are timed
-  int64_t ray_nanoseconds = 0;   ///< of timed paths: in the ray caster
-  int64_t path_nanoseconds = 0;  ///< of timed paths: all of it
+  int64_t ray_nanoseconds = 0;   ///< in the ray caster
+  int64_t path_nanoseconds = 0;  ///< all of it
 
   RayCount& operator+=(const RayCount& more) {
     rays += more.rays;
@@ -27,35 +29,41 @@ struct RayCount {
   double ray_share() const;
 };
 
+/// Where a path begins, and its random numbers.
+struct PathStart {
+  vec3 origin{0};  ///< epsilon off its surface
+  vec3 normal{0};  ///< unit: of the plane that light is measured on
+  PathSeed seed;
+};
+
+/// What a camera looks along. The path's first pair of random numbers is left to the lens.
+struct CameraPath {
+  Ray ray;
+  PathSeed seed;
+};
+constexpr uint32_t kLensPair = 1;
+
 /// Paths through a scene. Thread safe; refers to the scene, which must outlive it.
 class PathTracer {
  public:
+  /// So many paths go together; more than that at once are no quicker.
+  static constexpr size_t kBundle = 64;
+
   explicit PathTracer(const TracedScene& scene) : scene_(scene), lights_(scene) {}
 
-  /// One sample of the irradiance on a plane of unit `normal`, lux; its expectation is the integral of
-  /// incident radiance times cosine over the hemisphere. `origin` lies epsilon off its surface.
-  vec3 irradiance(const vec3& origin, const vec3& normal, PathSampler& sampler, RayCount& count) const;
+  /// One sample of the irradiance on each path's plane, lux; its expectation is the integral of incident
+  /// radiance times cosine over the hemisphere. `lux` is as long as `starts`.
+  void irradiance(std::span<const PathStart> starts, std::span<vec3> lux, RayCount& count) const;
 
-  /// One sample of the radiance that a camera sees along `ray`, nits. As in any viewer, backs of one-sided
+  /// One sample of the radiance that a camera sees along each ray, nits. As in any viewer, backs of one-sided
   /// surfaces are looked through by the camera (and by nothing else), and unlit surfaces show their colour.
-  vec3 radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const;
+  /// `nits` is as long as `seen`.
+  void radiance(std::span<const CameraPath> seen, std::span<vec3> nits, RayCount& count) const;
 
   const TracedScene& scene() const { return scene_; }
   const LightSampler& lights() const { return lights_; }
 
  private:
-  /// A place on a surface, where its rays start, a little above, and its unit normal.
-  struct Start {
-    vec3 point, origin, normal;
-  };
-  vec3 trace_irradiance(const vec3& first, const vec3& plane, PathSampler& sampler, RayCount& count) const;
-  vec3 trace_radiance(const Ray& ray, PathSampler& sampler, RayCount& count) const;
-  vec3 direct(const Start& start, double lamp, PathSampler& sampler, RayCount& count) const;
-  vec3 arriving(const LightSample& light, const Start& start, RayCount& count) const;
-  float from_the_point(const Start& start, const Ray& ray, const Meeting& met, float& cosine, float& distance,
-                       float& cosine_there) const;
-  Meeting closest(const Ray& ray, RayCount& count) const;
-
   const TracedScene& scene_;
   LightSampler lights_;
 };

@@ -1,6 +1,7 @@
 #include "trace/reference_image.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -51,15 +52,14 @@ class Painting {
     std::atomic<bool> stopped{false};
     std::vector<RayCount> rows(height_);
     parallel_for(height_, [&](size_t y) {
-      RayCount row;
-      for (uint32_t x = 0; x < width_ && !stopped; ++x) {
-        if (stop())
+      for (uint32_t x = 0; x < width_; x += kPixelsTogether) {
+        if (stopped || stop()) {
           stopped = true;
-        else
-          pixels_[y * width_ + x].add(sample(x, static_cast<uint32_t>(y), pass, row));
+          return;
+        }
+        add_samples(x, std::min(width_, x + kPixelsTogether), static_cast<uint32_t>(y), pass, rows[y]);
       }
-      rows[y] = row;
-      progress.rays.fetch_add(row.rays, std::memory_order_relaxed);
+      progress.rays.fetch_add(rows[y].rays, std::memory_order_relaxed);
     });
     for (const RayCount& row : rows) rays_ += row;
     return !stopped;
@@ -69,20 +69,28 @@ class Painting {
   void finish(ReferenceImage& result) const;
 
  private:
-  /// The mean of one pass' samples of a pixel.
-  dvec3 sample(uint32_t x, uint32_t y, uint32_t pass, RayCount& count) const {
-    const uint32_t pixel = y * width_ + x, pass_seed = hash(hash(seed_, pixel), pass);
-    const vec2 corner(static_cast<float>(x), static_cast<float>(y)),
-        size(static_cast<float>(width_), static_cast<float>(height_));
-    dvec3 sum(0);
-    for (uint32_t i = 0; i < kBatches; ++i) {
-      count.timed = (pixel + i + pass) % (2 * kBatches) == 0;
-      PathSampler sampler(i, pass_seed);
-      const SobolPoint p = sampler.next();
-      const vec2 inside(static_cast<float>(unit_double(p.u)), static_cast<float>(unit_double(p.v)));
-      sum += dvec3(tracer_.radiance(lens_.ray((corner + inside) / size), sampler, count));
+  static constexpr uint32_t kPixelsTogether = PathTracer::kBundle / kBatches;
+
+  /// One pass' samples of the pixels from `begin` to before `end` of row `y`.
+  void add_samples(uint32_t begin, uint32_t end, uint32_t y, uint32_t pass, RayCount& count) {
+    std::array<CameraPath, PathTracer::kBundle> paths;
+    std::array<vec3, PathTracer::kBundle> nits;
+    const vec2 size(static_cast<float>(width_), static_cast<float>(height_));
+    size_t filled = 0;
+    for (uint32_t x = begin; x < end; ++x)
+      for (uint32_t i = 0; i < kBatches; ++i) {
+        const PathSeed seed{i, hash(hash(seed_, y * width_ + x), pass)};
+        const SobolPoint p = path_point(seed, kLensPair);
+        const vec2 at(static_cast<float>(x) + static_cast<float>(unit_double(p.u)),
+                      static_cast<float>(y) + static_cast<float>(unit_double(p.v)));
+        paths[filled++] = {lens_.ray(at / size), seed};
+      }
+    tracer_.radiance({paths.data(), filled}, {nits.data(), filled}, count);
+    for (uint32_t x = begin; x < end; ++x) {
+      dvec3 sum(0);
+      for (uint32_t i = 0; i < kBatches; ++i) sum += dvec3(nits[(x - begin) * kBatches + i]);
+      pixels_[size_t{y} * width_ + x].add(sum / static_cast<double>(kBatches));
     }
-    return sum / static_cast<double>(kBatches);
   }
 
   const PathTracer& tracer_;

@@ -3,6 +3,7 @@
 // are asked for.
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "base/rng.h"
 
@@ -56,25 +57,24 @@ inline double unit_double(uint32_t fraction) {
   return static_cast<double>(fraction) * 0x1p-32;
 }
 
-/// The numbers of one path. Every call takes the next two dimensions; those beyond the first kSobolPairs are
-/// plain hashes, for so deep in a path there is nothing left to spread evenly.
-class PathSampler {
- public:
-  /// Sample `index` of the randomisation `seed`.
-  PathSampler(uint32_t index, uint32_t seed) : index_(index), seed_(seed) {}
-
-  SobolPoint next() {
-    const uint32_t pair_seed = hash(seed_, ++pair_);
-    if (pair_ <= kSobolPairs) return sobol_point(index_, pair_seed);
-    const uint32_t u = hash(index_, pair_seed);
-    return {u, hash(u)};
-  }
-
- private:
-  static constexpr uint32_t kSobolPairs = 12;
-
-  uint32_t index_, seed_;
-  uint32_t pair_ = 0;
+/// Which of all paths: sample `index` of the randomisation `seed`.
+struct PathSeed {
+  uint32_t index = 0, seed = 0;
 };
+
+/// Dimensions beyond this many pairs are plain hashes: so deep in a path there is nothing left to spread
+/// evenly.
+constexpr uint32_t kSobolPairs = 12;
+
+/// Two of a path's dimensions, of which it has as many pairs as are asked for.
+inline SobolPoint path_point(PathSeed path, uint32_t pair) {
+  const uint32_t pair_seed = hash(path.seed, pair);
+  if (pair <= kSobolPairs) return sobol_point(path.index, pair_seed);
+  const uint32_t u = hash(path.index, pair_seed);
+  return {u, hash(u)};
+}
+
+/// `path_point` of many paths at once; `points` is as long as `paths`.
+void path_points(std::span<const PathSeed> paths, uint32_t pair, std::span<SobolPoint> points);
 
 }  // namespace goldthread

@@ -23,6 +23,22 @@ bool is_even(const TracedPart& part) {
          !m.emission_texture.present();
 }
 
+uint8_t set_of(const Texture& texture) {
+  return std::min<uint8_t>(texture.texcoord, 1);
+}
+
+/// Those texture coordinates that the material's textures use and the primitive has.
+std::vector<uint8_t> texcoord_sets(const Material& m, const Primitive& source) {
+  std::vector<uint8_t> sets;
+  for (uint8_t set = 0; set < 2; ++set)
+    for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
+      if (t->present() && set_of(*t) == set && !source.texcoords[set].empty()) {
+        sets.push_back(set);
+        break;
+      }
+  return sets;
+}
+
 /// FNV-1a over the bytes of plain values.
 class Fingerprint {
  public:
@@ -102,20 +118,26 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
   part.source = &source;
   part.material = &scene_.materials[source.material];
   part.first_triangle = static_cast<uint32_t>(triangles_.size());
+  const std::vector<uint8_t> used = texcoord_sets(*part.material, source);
   for (uint32_t t = 0; t < source.triangle_count(); ++t) {
     const uint32_t* index = &source.indices[3 * size_t{t}];
     const UVec3 corners = first_vertex + UVec3(index[0], index[1], index[2]);
     const vec3 normal = unit_normal(positions_[corners.x], positions_[corners.y], positions_[corners.z]);
     if (normal == vec3(0) || !is_finite(normal)) continue;
     corners_.push_back(corners);
+    for (const uint8_t set : used)
+      part.texcoords[set].push_back({source.texcoords[set][index[0]], source.texcoords[set][index[1]],
+                                     source.texcoords[set][index[2]]});
     triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t});
   }
   part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
-  parts_.push_back(part);
-  if (part.triangle_count == 0 || !is_even(part)) return;
-  parts_.back().reflectance = reflectance(part.first_triangle, vec2(0));
-  parts_.back().emission = emission(part.first_triangle, vec2(0));
-  parts_.back().even = true;
+  const bool even = part.triangle_count > 0 && is_even(part);
+  parts_.push_back(std::move(part));
+  TracedPart& added = parts_.back();
+  if (!even) return;
+  added.reflectance = reflectance(added.first_triangle, vec2(0));
+  added.emission = emission(added.first_triangle, vec2(0));
+  added.even = true;
 }
 
 bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
@@ -124,17 +146,23 @@ bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
 }
 
 Meeting TracedScene::closest(const Ray& ray) const {
-  const Hit hit = caster_->closest(ray);
   Meeting met;
-  if (hit.missed()) return met;
-  const vec3& front = triangles_[hit.triangle].normal;
+  meet(ray, caster_->closest(ray), met);
+  return met;
+}
+
+void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.triangle = hit.triangle;
+  met.live = false;
+  if (hit.missed()) return;
+  const TracedTriangle& triangle = triangles_[hit.triangle];
+  const Material& m = *parts_[triangle.part].material;
+  const bool from_front = dot(triangle.normal, ray.direction) < 0;
   met.distance = hit.distance;
   met.weights = hit.weights;
-  met.normal = dot(front, ray.direction) < 0 ? front : -front;
-  met.live = is_live(hit.triangle, ray.direction);
-  if (!met.live && !material(hit.triangle).unlit) look_for_front(ray, met);
-  return met;
+  met.normal = from_front ? triangle.normal : -triangle.normal;
+  met.live = !m.unlit && (from_front || m.double_sided);
+  if (!met.live && !m.unlit) look_for_front(ray, met);
 }
 
 void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
@@ -164,9 +192,17 @@ T TracedScene::interpolate(const std::vector<T>& values, uint32_t triangle, vec2
 }
 
 vec2 TracedScene::texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const {
-  const std::vector<vec2>& uv =
-      parts_[triangles_[triangle].part].source->texcoords[std::min<uint8_t>(texture.texcoord, 1)];
-  return uv.empty() ? vec2(0) : interpolate(uv, triangle, weights);
+  const TracedPart& part = parts_[triangles_[triangle].part];
+  const std::vector<CornerTexcoords>& set = part.texcoords[set_of(texture)];
+  if (set.empty()) return vec2(0);
+  const CornerTexcoords& corners = set[triangle - part.first_triangle];
+  return (1 - weights.x - weights.y) * corners[0] + weights.x * corners[1] + weights.y * corners[2];
+}
+
+void TracedScene::prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Material& m = *part.material;
+  for (const Texture* texture : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
+    if (texture->present()) prefetch_texture(*texture, scene_.images, texcoord(*texture, triangle, weights));
 }
 
 vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {

@@ -1,6 +1,7 @@
 // The scene as a path tracer meets it: world triangles as they are in the file, nothing welded, clustered or
 // averaged, so that it has no mistake in common with the solver that it judges.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -11,12 +12,16 @@
 
 namespace goldthread {
 
+using CornerTexcoords = std::array<vec2, 3>;  ///< of a triangle's corners 0, 1 and 2
+
 /// The triangles of one primitive of one instance.
 struct TracedPart {
   uint32_t instance = 0, primitive = 0;
   const Primitive* source = nullptr;
   const Material* material = nullptr;
   uint32_t first_triangle = 0, triangle_count = 0;
+  /// By set, of each triangle, side by side; empty where no texture asks for them.
+  std::array<std::vector<CornerTexcoords>, 2> texcoords;
   bool even = false;    ///< no texture and no vertex colour: the next two hold all over
   vec3 reflectance{0};  ///< as TracedScene::reflectance
   vec3 emission{0};     ///< as TracedScene::emission
@@ -52,6 +57,8 @@ class TracedScene {
   /// the black back of one sheet is met and another sheet in the same place shows its front, as in plates
   /// without thickness that are modelled as two, it is the front.
   Meeting closest(const Ray& ray) const;
+  /// What `closest` makes of what the ray caster says.
+  void meet(const Ray& ray, const Hit& hit, Meeting& met) const;
   /// Share of light that gets along the ray from near to far.
   float transmittance(const Ray& ray) const { return caster_->transmittance(ray); }
 
@@ -65,6 +72,20 @@ class TracedScene {
   vec3 emission(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
     return part.even ? part.emission : emission_at(part, triangle, weights);
+  }
+  /// Asks memory for what `meeting` reads of a triangle, and does not wait for it.
+  void prefetch(const Hit& hit) const {
+    if (!hit.missed()) __builtin_prefetch(&triangles_[hit.triangle]);
+  }
+  /// The same for what `reflectance` and `emission` read of a point: first where its texels are, then these.
+  void prefetch_texcoords(uint32_t triangle) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    for (const std::vector<CornerTexcoords>& set : part.texcoords)
+      if (!set.empty()) __builtin_prefetch(&set[triangle - part.first_triangle]);
+  }
+  void prefetch_texels(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    if (!part.even) prefetch_textures(part, triangle, weights);
   }
   /// Share of a point that is there, 0..1: 0 or 1 for a mask, the clamped alpha for a blend.
   float coverage(uint32_t triangle, vec2 weights) const;
@@ -89,6 +110,7 @@ class TracedScene {
   void add(uint32_t instance, uint32_t primitive);
   vec3 reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  void prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
   vec2 texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const;
   template <typename T>

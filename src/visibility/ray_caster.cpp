@@ -230,19 +230,30 @@ RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
-Hit RayCaster::closest(const Ray& ray) const {
-  RTCRayHit query{};
+// Written where it is to lie: copying what has just been written in other widths stalls.
+void RayCaster::closest(const Ray& ray, Hit& hit) const {
+  RTCRayHit query;
   query.ray = to_embree(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect1(state_->scene, &query);
-  Hit hit;
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  hit.triangle = Hit::kMiss;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
   hit.triangle = state_->triangle_of(query.hit.geomID, query.hit.primID);
   hit.distance = query.ray.tfar;
   hit.weights = {query.hit.u, query.hit.v};
   hit.normal = {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
+}
+
+Hit RayCaster::closest(const Ray& ray) const {
+  Hit hit;
+  closest(ray, hit);
   return hit;
+}
+
+void RayCaster::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+  GOLDTHREAD_CHECK_EQ(rays.size(), hits.size());
+  for (size_t i = 0; i < rays.size(); ++i) closest(rays[i], hits[i]);
 }
 
 float RayCaster::transmittance(const Ray& ray) const {
@@ -253,6 +264,11 @@ float RayCaster::transmittance(const Ray& ray) const {
 }
 
 void RayCaster::transmittance(std::span<const Ray> rays, std::span<float> out) const {
+  GOLDTHREAD_CHECK_EQ(rays.size(), out.size());
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = transmittance(rays[i]);
+}
+
+void RayCaster::packet_transmittance(std::span<const Ray> rays, std::span<float> out) const {
   GOLDTHREAD_CHECK_LE(rays.size(), size_t{16});
   GOLDTHREAD_CHECK_EQ(rays.size(), out.size());
   if (rays.size() == 1) {

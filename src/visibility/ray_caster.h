@@ -45,10 +45,14 @@ class RayCaster {
   /// The nearest hit. What is partly transparent stops its share of rays: which, a hash of ray and triangle
   /// says, so that it is the same every time.
   Hit closest(const Ray& ray) const;
+  /// `closest` for many rays, one after another; `hits` is as long as `rays`.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// Share of light that gets from near to far: the product over all that lies between.
   float transmittance(const Ray& ray) const;
-  /// `transmittance` for up to 16 rays at once, as a packet; `out` is as long as `rays`.
+  /// `transmittance` for many rays, one after another; `out` is as long as `rays`.
   void transmittance(std::span<const Ray> rays, std::span<float> out) const;
+  /// `transmittance` for up to 16 rays that go much the same way, as a packet; `out` is as long as `rays`.
+  void packet_transmittance(std::span<const Ray> rays, std::span<float> out) const;
 
   /// Calls `visit(triangle)` for every triangle that comes within `radius` of `point`, and for some others
   /// that are not far, in no order.
@@ -61,6 +65,8 @@ class RayCaster {
   uint64_t memory_bytes() const;  ///< what Embree has allocated for this scene
 
  private:
+  void closest(const Ray& ray, Hit& hit) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

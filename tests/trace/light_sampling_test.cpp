@@ -147,14 +147,47 @@ TEST(LightSampling, LampsFollowTheirExtension) {
   Light spot = lamp(LightKind::kSpot, 1, vec3(0));
   spot.inner_cone = 0;
   spot.outer_cone = kPi / 3;  // cosines 1 and 0.5
-  EXPECT_FLOAT_EQ(lamp_cone(spot, vec3(0, 0, -1)), 1);
-  EXPECT_FLOAT_EQ(lamp_cone(spot, vec3(0, 0.6f, -0.8f)), 0.36f);
-  EXPECT_FLOAT_EQ(lamp_cone(spot, vec3(0, 0.9f, -std::sqrt(0.19f))), 0);
+  spot.position = vec3(0, 0, 1);
+  spot.direction = vec3(0, 0, -1);
+  // On a plane that faces the lamp from where `way` leads: cone x range / distance squared.
+  const auto share = [&](const vec3& way, float distance) {
+    return Lamp(spot).share_at(spot.position + distance * way, -way) * distance * distance;
+  };
+  EXPECT_FLOAT_EQ(share(vec3(0, 0, -1), 1), 1);
+  EXPECT_FLOAT_EQ(share(vec3(0, 0.6f, -0.8f), 1), 0.36f);
+  EXPECT_FLOAT_EQ(share(vec3(0, 0.9f, -std::sqrt(0.19f)), 1), 0);
+  EXPECT_FLOAT_EQ(share(vec3(0, 0, -1), 100), 1);
   spot.range = 2;
-  EXPECT_FLOAT_EQ(lamp_range(spot, 1), 0.9375f);
-  EXPECT_FLOAT_EQ(lamp_range(spot, 3), 0);
-  spot.range = 0;
-  EXPECT_FLOAT_EQ(lamp_range(spot, 1e6f), 1);
+  EXPECT_FLOAT_EQ(share(vec3(0, 0, -1), 1), 0.9375f);
+  EXPECT_FLOAT_EQ(share(vec3(0, 0, -1), 3), 0);
+}
+
+// Each of many lamps, the dimmest included, is drawn as often as what it brings, and brings their sum.
+TEST(LightSampling, LampsAreDrawnByWhatTheyBring) {
+  Scene scene;
+  add(scene, square(5, 0, true), diffuse(0.5f));
+  for (int i = 0; i < 5; ++i)
+    scene.lights.push_back(lamp(LightKind::kPoint, 1 + 10 * float(i), vec3(i, 0, 2)));
+  scene.lights.push_back(lamp(LightKind::kPoint, 500, vec3(0, 0, -2)));  // below the floor
+  const Traced t(std::move(scene));
+  const LightSampler& lights = t.tracer->lights();
+  const vec3 up(0, 0, 1);
+  std::vector<float> sums(lights.lamp_count());
+  std::vector<int> drawn(lights.lamp_count(), 0);
+  float whole = 0;
+  for (const Light& light : t.scene->lights) whole += Lamp(light).light_at(vec3(0), up).irradiance.x;
+  constexpr int kCount = 10000;
+  for (int i = 0; i < kCount; ++i) {
+    const LightSample light = lights.sample_lamp(vec3(0), up, (i + 0.5) / kCount, sums);
+    EXPECT_NEAR(light.irradiance.x, whole, 1e-5f * whole);
+    ++drawn[size_t(std::lround(light.shadow.direction.x))];
+    EXPECT_GT(light.shadow.direction.z, 0);
+  }
+  for (size_t i = 0; i < 5; ++i) {
+    const float brings = Lamp(t.scene->lights[i]).light_at(vec3(0), up).irradiance.x;
+    EXPECT_NEAR(drawn[i], kCount * double(brings / whole), 1.5) << i;
+  }
+  EXPECT_EQ(lights.sample_lamp(vec3(0), -up, 0.999999, sums).shadow.direction.z, -2);
 }
 
 }  // namespace

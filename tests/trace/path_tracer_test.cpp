@@ -271,15 +271,19 @@ TEST(PathTracer, CameraSeesEmissionAndReflectedLight) {
   ray.origin = vec3(0.1f, 0.2f, 5);
   ray.direction = vec3(0, 0, -1);
   RayCount count;
-  PathSampler sampler(0, 1);
-  const vec3 lid = t.tracer->radiance(ray, sampler, count);
+  const auto seen = [&] {
+    vec3 nits(0);
+    t.tracer->radiance({{CameraPath{ray, {0, 1}}}}, {&nits, 1}, count);
+    return nits;
+  };
+  const vec3 lid = seen();
   ray.origin.z = 2;
-  const vec3 floor = t.tracer->radiance(ray, sampler, count);
+  const vec3 floor = seen();
   const float sun = 1000 / std::sqrt(101.0f) / kPi;
   EXPECT_NEAR(lid.x, 0.9f * sun, 1e-2f);
   EXPECT_NEAR(floor.x, 7 + 0.5f * sun, 1e-2f);
   ray.direction = kUp;
-  EXPECT_EQ(t.tracer->radiance(ray, sampler, count), vec3(0));  // through the lid's back, to the dark
+  EXPECT_EQ(seen(), vec3(0));  // through the lid's back, to the dark
   EXPECT_GT(count.rays, 5u);
 }
 

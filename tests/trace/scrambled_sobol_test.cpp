@@ -38,9 +38,7 @@ TEST(ScrambledSobol, EachPointIsEvenOverSeeds) {
     std::vector<double> cells(kCells * kCells, 0);
     double correlation = 0, last = 0;
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
-      PathSampler sampler(index, hash(seed, 77));
-      for (int skipped = 0; skipped < 3; ++skipped) sampler.next();
-      const SobolPoint p = sampler.next();
+      const SobolPoint p = path_point({index, hash(seed, 77)}, 4);
       cells[(p.u >> 28) * kCells + (p.v >> 28)] += 1;
       correlation += (unit_double(p.u) - 0.5) * last;
       last = unit_double(p.u) - 0.5;
@@ -58,14 +56,25 @@ TEST(ScrambledSobol, DeepDimensionsAreEvenToo) {
   double sum = 0, product = 0;
   constexpr uint32_t kCount = 65536;
   for (uint32_t i = 0; i < kCount; ++i) {
-    PathSampler sampler(i, 12345);
-    SobolPoint p{};
-    for (int pair = 0; pair < 30; ++pair) p = sampler.next();
+    const SobolPoint p = path_point({i, 12345}, 30);
     sum += unit_double(p.u);
     product += (unit_double(p.u) - 0.5) * (unit_double(p.v) - 0.5);
   }
   EXPECT_NEAR(sum / kCount, 0.5, 4 * std::sqrt(1.0 / 12 / kCount));
   EXPECT_NEAR(product / kCount, 0, 4.0 / 12 / std::sqrt(double(kCount)));
+}
+
+TEST(ScrambledSobol, ManyAtOnceAreTheSame) {
+  std::vector<PathSeed> paths;
+  for (uint32_t i = 0; i < 37; ++i) paths.push_back({hash(i, 1), hash(i, 2)});
+  std::vector<SobolPoint> points(paths.size());
+  for (uint32_t pair = 1; pair <= kSobolPairs + 2; ++pair) {
+    path_points(paths, pair, points);
+    for (size_t i = 0; i < paths.size(); ++i) {
+      EXPECT_EQ(points[i].u, path_point(paths[i], pair).u);
+      EXPECT_EQ(points[i].v, path_point(paths[i], pair).v);
+    }
+  }
 }
 
 }  // namespace

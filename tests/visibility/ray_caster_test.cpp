@@ -91,7 +91,7 @@ TEST(RayCaster, EmptyWorldBlocksNothing) {
   EXPECT_TRUE(caster.closest({{0, 0, 0}, {0, 0, 1}}).missed());
   const std::vector<Ray> rays(16, Ray{{0, 0, 0}, {0, 0, 1}});
   std::vector<float> passing(rays.size(), -1);
-  caster.transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing);
   EXPECT_EQ(passing, std::vector<float>(rays.size(), 1));
 }
 
@@ -105,7 +105,7 @@ RC_GTEST_PROP(RayCaster, AllQuestionsAgreeWithTheDefinition, (uint32_t seed)) {
     if (random.in(0, 1) < 0.5f) ray.far = random.in(0.2f, 2);
   }
   std::vector<float> passing(rays.size(), -1);
-  caster.transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing);
   for (size_t i = 0; i < rays.size(); ++i) {
     double nearest = INFINITY;
     for (const UVec3& t : world.triangles) {
@@ -148,7 +148,7 @@ TEST(RayCaster, SeeThroughTrianglesAreAsked) {
   std::vector<Ray> rays;
   for (int i = 0; i < 16; ++i) rays.push_back(down(-0.9f + 0.12f * float(i), 3, 1.5f));
   std::vector<float> passing(rays.size());
-  caster.transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing);
   for (size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(passing[i], rays[i].origin.x < 0 ? 1 : 0) << i;
     EXPECT_EQ(caster.transmittance(rays[i]), passing[i]) << i;
@@ -169,7 +169,7 @@ TEST(RayCaster, LightPassesLayersByTheirProduct) {
     expected.push_back(std::array{1.0f, 0.25f, 0.125f, 0.0f}[size_t(i % 4)]);
   }
   std::vector<float> passing(rays.size());
-  caster.transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing);
   EXPECT_EQ(passing, expected);
   for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(caster.transmittance(rays[i]), expected[i]);
 }

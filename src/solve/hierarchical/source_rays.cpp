@@ -29,7 +29,7 @@ Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const
 void timed_packet(const RayCaster& caster, std::span<const Ray> rays, std::span<float> passing,
                   RayCount& count) {
   const auto start = std::chrono::steady_clock::now();
-  caster.transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing);
   const auto time = std::chrono::steady_clock::now() - start;
   count.rays += rays.size();
   count.nanoseconds +=

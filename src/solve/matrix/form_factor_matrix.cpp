@@ -256,7 +256,7 @@ class PairTracer {
     }
     for (size_t k = 0; k < count; k += 16) {
       const size_t some = std::min<size_t>(16, count - k);
-      caster_.transmittance({&cast[k], some}, {&passing[k], some});
+      caster_.packet_transmittance({&cast[k], some}, {&passing[k], some});
     }
     rays += count;
     double all = 0, free = 0, squares = 0;

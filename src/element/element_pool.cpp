@@ -47,7 +47,8 @@ void ElementPool::make_volumes() {
       },
       16);
   const VolumeClusterTree tree = build_volume_clusters(items);
-  volume_clusters_ = tree.nodes.size();
+  volume_boxes_.reserve(tree.nodes.size());
+  for (const VolumeCluster& node : tree.nodes) volume_boxes_.push_back(node.box);
   surface_roots_.assign(count, kNoElement);
   root_ = 0;
   elements_.emplace_back();
@@ -71,6 +72,7 @@ void ElementPool::make_volumes() {
     const auto child = static_cast<ElementId>(elements_.size());
     elements_[id].first_child = child;
     elements_[id].kind = ElementKind::kVolume;
+    elements_[id].shape = ref;
     elements_.resize(elements_.size() + 2);
     for (uint32_t c = 0; c < 2; ++c) {
       elements_[child + c].parent = id;
@@ -252,7 +254,8 @@ std::array<uint64_t, 4> ElementPool::count_by_kind() const {
 
 uint64_t ElementPool::memory_bytes() const {
   uint64_t bytes = elements_.capacity() * sizeof(Element) + samples_.capacity() * sizeof(SurfacePoint) +
-                   patches_.capacity() * sizeof(Patch) + corners_.capacity() * sizeof(vec3);
+                   patches_.capacity() * sizeof(Patch) + corners_.capacity() * sizeof(vec3) +
+                   volume_boxes_.capacity() * sizeof(Box);
   for (const auto& mesh : leaf_meshes_)
     if (mesh) bytes += mesh->memory_bytes();
   return bytes;

@@ -9,6 +9,7 @@
 
 #include "element/leaf_mesh.h"
 #include "element/surface_set.h"
+#include "math/box.h"
 #include "math/form_factor.h"
 
 namespace goldthread {
@@ -41,8 +42,8 @@ struct Element {
   ElementId parent = kNoElement;
   ElementId first_child = kNoElement;  ///< the second follows it; kNoElement while there are none
   uint32_t part = 0;                   ///< SurfaceSet::parts, for surfaces
-  uint32_t shape = 0;                  ///< ClusterRef, triangle, patch number, light number, by kind
-  uint32_t samples = 0;                ///< first of kStoredSamples in the pool, for kVolume and kCluster
+  uint32_t shape = 0;    ///< volume cluster, ClusterRef, triangle, patch number, light number, by kind
+  uint32_t samples = 0;  ///< first of kStoredSamples in the pool, for kVolume and kCluster
   vec3 centre{0};
   float radius = 0;
   float thickness = 0;     ///< how far it reaches from the plane through its centre, on either side, metres
@@ -81,7 +82,7 @@ class ElementPool {
   std::span<const ElementId> lights() const {
     return lights_;
   }  ///< sky octants, point, spot and directional lights
-  size_t volume_clusters() const { return volume_clusters_; }
+  size_t volume_clusters() const { return volume_boxes_.size(); }
   const SurfaceSet& surfaces() const { return *set_; }
 
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
@@ -109,6 +110,8 @@ class ElementPool {
   /// The direction within a sky element that belongs to (u, v), spread evenly over its solid angle.
   vec3 sky_direction(ElementId id, float u, float v) const;
 
+  /// The box of a volume cluster: all its surfaces lie within.
+  const Box& box(ElementId id) const { return volume_boxes_[elements_[id].shape]; }
   /// Corners of a triangle or patch.
   ElementPolygon polygon(ElementId id) const;
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
@@ -161,7 +164,7 @@ class ElementPool {
   std::vector<ElementId> lights_, surface_roots_;
   std::vector<std::array<vec3, 3>> sky_;
   ElementId root_ = kNoElement;
-  size_t volume_clusters_ = 0;
+  std::vector<Box> volume_boxes_;
 
   std::vector<Patch> patches_;
   std::vector<vec3> corners_;

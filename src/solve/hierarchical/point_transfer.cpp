@@ -1,46 +1,19 @@
 #include "solve/hierarchical/point_transfer.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "math/far_form_factor.h"
 
 namespace goldthread {
 namespace {
-
-// Largest error of a form factor that one piece of a source may bring in.
-constexpr float kTolerance = 6e-4f;
-// The same for a piece that the receiver's horizon cuts: what is above it brings more than its centre says,
-// and such errors add up. Of lamps, which outshine all else a thousandfold, next to nothing may be lost.
-constexpr float kHorizonTolerance = 2e-4f, kLampTolerance = 2e-5f;
 
 // Whether a piece of form factor about `factor`, whose points lie within `radius` of a centre
 // `distance_squared` away, may be treated as a point: the error of that falls as the square of size over
 // distance.
 bool small_enough(float factor, float radius, float distance_squared) {
   const float ratio = radius * radius / std::max(distance_squared, 1e-30f);
-  return ratio < 0.25f && factor * ratio < kTolerance;
-}
-
-vec3 dipole(const vec3& to_source, float distance_squared, const vec3& summed_normal) {
-  const float power = -dot(to_source, summed_normal);
-  if (power <= 0) return vec3(0);
-  return to_source * (power / (kPi * distance_squared * distance_squared));
-}
-
-// The dipole of a flat piece with its second-order term. Moving over the piece's plane, K = (n.d)(s.d)/d^4
-// has mean
-//   K (1 + rho^2/d^2 (1 - 3 cos^2 + (n.s)(s.d)/(n.d)))
-// where rho^2 is twice the sum of the piece's two variances (rho is the radius, for a disc), s its unit
-// normal turned to the receiver and cos that of s and d: half the variance times the in-plane Laplacian of K.
-// On the axis of a disc that is the start of the exact rho^2/(rho^2 + d^2); without it near pieces bring too
-// much.
-vec3 flat_dipole(const vec3& d, float squared, const vec3& summed_normal, const vec3& n, float rho_squared) {
-  const float at_receiver = dot(d, n), power = -dot(d, summed_normal);
-  if (at_receiver <= 0 || power <= 0) return vec3(0);
-  const float area = length(summed_normal);
-  const float at_source = power / area;
-  const float cosine_squared = at_source * at_source / squared;
-  const float bend = 1 - 3 * cosine_squared - dot(n, summed_normal) / area * at_source / at_receiver;
-  const float factor = std::clamp(1 + rho_squared / squared * bend, 0.5f, 1.5f);
-  return d * (factor * power / (kPi * squared * squared));
+  return ratio < 0.25f && factor * ratio < kPieceTolerance;
 }
 
 // Whether x is before the plane through `corner`, by more than rounding can make of a point on it: seen
@@ -51,18 +24,6 @@ bool in_front(const vec3& x, const vec3& corner, const vec3& area_vector) {
   return dot(x - corner, area_vector) > rounding * length(area_vector);
 }
 
-// A far piece that turns both faces and backs to x: a bolt, a chair's leg. Half of the sum of |n.d| and of
-// -n.d over its triangles is the projected area that faces x; the second is S's, the first is S's own besides
-// what would be half the area, were the normals that cancel in S spread evenly. Taking S alone, a closed
-// object would send nothing.
-vec3 rounded_dipole(const vec3& d, float squared, const vec3& summed_normal, float area) {
-  const float distance = std::sqrt(squared);
-  const float net = -dot(d, summed_normal) / distance;
-  const float cancelled = std::max(0.0f, area - length(summed_normal));
-  const float facing = 0.5f * (std::abs(net) + 0.5f * cancelled + net);
-  return d * (facing / (kPi * squared * distance));
-}
-
 struct PlacedTree {
   const Part& part;
   const FaceClusterTree& tree;
@@ -70,31 +31,123 @@ struct PlacedTree {
   float winding;
 };
 
-vec3 triangle_transfer(const PlacedTree& placed, uint32_t triangle, const vec3& x, const vec3& n) {
+// A flat piece that is taken for far: `rho_squared` is what flat_dipole_form_factor wants.
+struct FarPolygon {
+  vec3 d;  // to its centroid
+  float squared = 0;
+  vec3 summed_normal;
+  float rho_squared = 0;
+};
+
+// A face cluster that is taken for far.
+struct FarCluster {
+  vec3 d;
+  float squared = 0;
+  vec3 summed_normal;
+  float area = 0, radius = 0;
+  bool nearly_flat = false;
+  ConeView<float> view;
+};
+
+vec3 polygon_dipole(const FarPolygon& p, const vec3& n) {
+  return flat_dipole_form_factor(p.d, p.squared, p.summed_normal, n, p.rho_squared);
+}
+
+vec3 cluster_dipole(const FarCluster& c, const vec3& n) {
+  if (c.nearly_flat) return flat_dipole_form_factor(c.d, c.squared, c.summed_normal, n, c.area / kPi);
+  if (dot(c.d, n) <= 0) return vec3(0);
+  return c.view.all_in_front ? dipole_form_factor(c.d, c.squared, c.summed_normal)
+                             : rounded_dipole_form_factor(c.d, c.squared, c.summed_normal, c.area);
+}
+
+double polygon_error_bound(const FarPolygon& p, std::span<const vec3> corners, const vec3& x, const vec3& n) {
+  std::array<DoubleTriangle, kMaxPolygon> triangles;
+  size_t count = 0;
+  for (size_t i = 1; i + 1 < corners.size(); ++i)
+    triangles[count++] = {dvec3(corners[0]), dvec3(corners[i]), dvec3(corners[i + 1])};
+  FarPiece piece = far_piece_of(x, {triangles.data(), count});
+  piece.flat = true;  // but for rounding
+  return dot(p.d, n) > 0 ? flat_dipole_error_bound(piece, n, p.rho_squared) : 0;
+}
+
+// What view_of_cone bounds a form factor by.
+double largest_form_factor(const ConeView<float>& view, double radius, double squared) {
+  const double left = 1 - radius / std::sqrt(squared);
+  return left > 0 ? static_cast<double>(view.factor) / (left * left)
+                  : std::numeric_limits<double>::infinity();
+}
+
+double cluster_error_bound(const FarCluster& c, const vec3& n) {
+  // What is there and what is taken for it both lie between nought and this.
+  const double taken = std::max(0.0f, dot(n, cluster_dipole(c, n)));
+  const double by_size = std::max(taken, largest_form_factor(c.view, c.radius, c.squared));
+  FarPiece piece;
+  piece.to_centroid = c.d;
+  piece.summed_normal = c.summed_normal;
+  piece.area = c.area;
+  piece.radius = c.radius;
+  piece.second_moment = piece.radius * piece.radius;
+  if (!c.view.all_in_front)
+    return c.nearly_flat ? by_size : std::min(by_size, rounded_dipole_error_bound(piece, n));
+  const bool is_cut = dot(c.d, n) < c.radius;
+  const double bound = is_cut ? cut_dipole_error_bound(piece, n) : dipole_error_bound(piece);
+  if (!c.nearly_flat) return std::min(by_size, bound);
+  const double dipole = std::max(0.0f, dot(n, dipole_form_factor(c.d, c.squared, c.summed_normal)));
+  return std::min(by_size, bound + std::abs(taken - dipole));
+}
+
+// What pieces bring together, and how far that may be off: what a descent adds up. `shape` gives the corners
+// of a far polygon.
+struct FactorSum {
+  vec3 m{0};
+  void add_near(const vec3& x, const vec3& n, std::span<const vec3> corners) {
+    m += polygon_form_factor(x, n, corners);
+  }
+  template <typename Shape>
+  void add_far(const FarPolygon& p, const Shape&, const vec3&, const vec3& n) {
+    m += polygon_dipole(p, n);
+  }
+  void add_far(const FarCluster& c, const vec3& n) { m += cluster_dipole(c, n); }
+};
+struct ErrorSum {
+  double bound = 0;
+  void add_near(const vec3&, const vec3&, std::span<const vec3>) {}
+  template <typename Shape>
+  void add_far(const FarPolygon& p, const Shape& shape, const vec3& x, const vec3& n) {
+    bound += polygon_error_bound(p, shape().span(), x, n);
+  }
+  void add_far(const FarCluster& c, const vec3& n) { bound += cluster_error_bound(c, n); }
+};
+
+template <typename Sum>
+void add_triangle(const PlacedTree& placed, uint32_t triangle, const vec3& x, const vec3& n, Sum& sum) {
   const UVec3& corner = placed.tree.mesh.triangles[triangle];
   const vec3 &a = placed.part.positions[corner.x], &b = placed.part.positions[corner.y],
              &c = placed.part.positions[corner.z];
   const vec3 normal = placed.winding * area_vector(a, b, c);
   const vec3 centre = (a + b + c) / 3.0f;
   const vec3 d = centre - x;
-  if (!in_front(x, a, normal)) return vec3(0);
+  if (!in_front(x, a, normal)) return;
   const float squared = dot(d, d);
   const float radius_squared =
       std::max({dot(a - centre, a - centre), dot(b - centre, b - centre), dot(c - centre, c - centre)});
   const float factor = -dot(d, normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
   const float height = dot(d, n);
+  const std::array<vec3, 3> corners{a, placed.winding > 0 ? b : c, placed.winding > 0 ? c : b};
   if (height * height > radius_squared && small_enough(factor, std::sqrt(radius_squared), squared)) {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
-    return flat_dipole(d, squared, normal, n, (dot(ab, ab) + dot(bc, bc) + dot(ca, ca)) / 18);
+    const float edges = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
+    const auto shape = [&] { return ElementPolygon{{corners[0], corners[1], corners[2]}, 3}; };
+    sum.add_far(FarPolygon{d, squared, normal, edges / 18}, shape, x, n);
+  } else {
+    sum.add_near(x, n, corners);
   }
-  const std::array<vec3, 3> corners{a, placed.winding > 0 ? b : c, placed.winding > 0 ? c : b};
-  return polygon_form_factor(x, n, corners);
 }
 
 // Descends a face cluster tree from `root`, adding up pieces that are small for their distance.
-vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n,
-                   float horizon_tolerance) {
-  vec3 sum(0);
+template <typename Sum>
+void add_tree(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n,
+              float horizon_tolerance, Sum& sum) {
   constexpr size_t kStack = 256;
   std::array<ClusterRef, kStack> stack;
   size_t depth = 0;
@@ -103,7 +156,7 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
   while (depth > 0) {
     const ClusterRef ref = stack[--depth];
     if (is_triangle(ref)) {
-      sum += triangle_transfer(placed, triangle_of(ref), x, n);
+      add_triangle(placed, triangle_of(ref), x, n, sum);
       continue;
     }
     const FaceCluster& node = placed.tree.nodes[ref];
@@ -113,37 +166,18 @@ vec3 tree_transfer(const PlacedTree& placed, ClusterRef root, const vec3& x, con
     const float squared = dot(d, d);
     const float area = node.area * area_scale;
     const vec3 summed = placed.area_map * node.summed_normal;
-    const float distance = std::sqrt(squared);
-    // The angle between S and the way to x, against the cone of normals widened by the cluster's own extent.
-    const float facing = -dot(d, summed) / (distance * length(summed) + 1e-30f);
-    const float cone_sine = std::sqrt(std::max(0.0f, 1 - node.cone_cosine * node.cone_cosine));
-    const float extent = std::min(1.0f, radius / std::max(distance, 1e-30f));
-    const float slack = node.cone_cosine > 0 ? std::min(1.0f, cone_sine + extent) : 1.0f;
-    if (squared > radius * radius && facing < -slack && node.cone_cosine > 0)
-      continue;  // all seen from behind
-    // At most: the cosines at both ends, as far as the cluster's extent leaves them open, over the squared
-    // distance.
-    const float at_receiver = std::min(1.0f, (std::abs(dot(d, n)) + radius) / (distance + 1e-30f));
-    const float at_source = std::min(1.0f, std::max(0.0f, facing) + slack);
-    const float factor = area * at_receiver * at_source / (kPi * squared + 1e-30f);
-    const bool turned_here = facing > slack;  // every triangle faces x
-    const bool small = turned_here ? small_enough(factor, radius, squared)
-                                   : factor < kTolerance && squared > 4 * radius * radius;
-    const bool near_horizon = std::abs(dot(d, n)) < radius && factor > horizon_tolerance;
+    const ConeView<float> view = view_of_cone(d, squared, n, summed, area, radius, node.cone_cosine);
+    if (view.all_behind) continue;
+    const bool small = view.all_in_front ? small_enough(view.factor, radius, squared)
+                                         : view.factor < kPieceTolerance && squared > 4 * radius * radius;
+    const bool near_horizon = std::abs(dot(d, n)) < radius && view.factor > horizon_tolerance;
     if ((small && !near_horizon) || depth + 2 > kStack) {
-      if (node.cone_cosine > 0.995f) {
-        sum += flat_dipole(d, squared, summed, n, area / kPi);
-      } else if (turned_here) {
-        if (dot(d, n) > 0) sum += dipole(d, squared, summed);
-      } else if (dot(d, n) > 0) {
-        sum += rounded_dipole(d, squared, summed, area);
-      }
+      sum.add_far(FarCluster{d, squared, summed, area, radius, node.cone_cosine > 0.995f, view}, n);
       continue;
     }
     stack[depth++] = node.child[1];
     stack[depth++] = node.child[0];
   }
-  return sum;
 }
 
 // A volume cluster: its stored samples stand for equal shares of its area.
@@ -188,28 +222,40 @@ float light_range_factor(const Light& light, float distance) {
 
 namespace {
 
-vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+// Adds up a face cluster, a triangle or a patch.
+template <typename Sum>
+void add_surface(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, Sum& sum) {
   const Element& e = pool[source];
-  switch (e.kind) {
+  if (e.kind == ElementKind::kPatch) {
+    const vec3 d = e.centre - x;
+    if (!in_front(x, e.centre, e.summed_normal)) return;
+    const float squared = dot(d, d);
+    const float factor = -dot(d, e.summed_normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
+    const auto shape = [&] { return pool.polygon(source); };
+    if (std::abs(dot(d, n)) > e.radius && small_enough(factor, e.radius, squared)) {
+      sum.add_far(FarPolygon{d, squared, e.summed_normal, e.area / kPi}, shape, x, n);
+    } else {
+      sum.add_near(x, n, shape().span());
+    }
+    return;
+  }
+  const Part& part = pool.surfaces().parts[e.part];
+  const PlacedTree placed{part, pool.surfaces().tree(part), e.back ? -1.0f * part.area_map : part.area_map,
+                          e.back ? -part.winding : part.winding};
+  if (e.kind == ElementKind::kTriangle) return add_triangle(placed, e.shape, x, n, sum);
+  add_tree(placed, e.shape, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance, sum);
+}
+
+vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+  switch (pool[source].kind) {
     case ElementKind::kVolume:
       return volume_transfer(pool, source, x, n);
     case ElementKind::kCluster:
-    case ElementKind::kTriangle: {
-      const Part& part = pool.surfaces().parts[e.part];
-      const PlacedTree placed{part, pool.surfaces().tree(part),
-                              e.back ? -1.0f * part.area_map : part.area_map,
-                              e.back ? -part.winding : part.winding};
-      if (e.kind == ElementKind::kTriangle) return triangle_transfer(placed, e.shape, x, n);
-      return tree_transfer(placed, e.shape, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance);
-    }
+    case ElementKind::kTriangle:
     case ElementKind::kPatch: {
-      const vec3 d = e.centre - x;
-      if (!in_front(x, e.centre, e.summed_normal)) return vec3(0);
-      const float squared = dot(d, d);
-      const float factor = -dot(d, e.summed_normal) / (kPi * squared * std::sqrt(squared) + 1e-30f);
-      if (std::abs(dot(d, n)) > e.radius && small_enough(factor, e.radius, squared))
-        return flat_dipole(d, squared, e.summed_normal, n, e.area / kPi);
-      return polygon_form_factor(x, n, pool.polygon(source).span());
+      FactorSum sum;
+      add_surface(pool, source, x, n, sum);
+      return sum.m;
     }
     case ElementKind::kSky:
       return sky_form_factor(n, pool.sky_corners(source));
@@ -232,6 +278,21 @@ vec3 point_transfer(const ElementPool& pool, ElementId source, const vec3& x, co
   // No plane fills more than the whole hemisphere, whatever the rounding of what touches x. What has layers,
   // one behind the other, may well: that is for visibility to sort out.
   return pool[source].flat && factor > 1 ? m / factor : m;
+}
+
+double point_transfer_error_bound(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
+  const Element& e = pool[source];
+  if (!is_surface(e.kind)) return 0;
+  if (e.kind == ElementKind::kVolume) {
+    const Box& box = pool.box(source);
+    const OrientedBox placed{box.centre(), mat3(1), 0.5f * box.size()};
+    const FormFactorBounds bounds = box_form_factor_bounds(x, n, placed, e.area, dvec3(0, 0, 1), -1);
+    const double taken = std::max(0.0f, dot(n, point_transfer(pool, source, x, n)));
+    return std::max(bounds.high - taken, taken - bounds.low);
+  }
+  ErrorSum sum;
+  add_surface(pool, source, x, n, sum);
+  return sum.bound;
 }
 
 }  // namespace goldthread

@@ -5,10 +5,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 
-#include <filesystem>
-#include <fstream>
+#include "math/shared_cases.h"
 
 namespace goldthread {
 namespace {
@@ -179,28 +177,20 @@ TEST(Triangulate, CoversThePolygonOnce) {
 }
 
 TEST(PolygonExchange, SharedCases) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factors.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream stream(file);
-  const nlohmann::json cases = nlohmann::json::parse(stream)["cases"];
+  const test::Json cases = test::shared_cases("view_factors.json");
+  if (cases.is_null()) GTEST_SKIP() << test::kNoSharedCases;
   size_t pairs = 0;
   for (const auto& item : cases) {
-    const auto corners = [](const nlohmann::json& shape) {
-      Polygon polygon;
-      for (const auto& v : shape["vertices"])
-        polygon.emplace_back(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
-      return polygon;
-    };
     if (!item["occluders"].empty() || item["to"]["type"] != "polygon") continue;
     const double exact = item["value"];
     double value = 0;
     if (item["from"]["type"] == "polygon") {
-      const Polygon from = corners(item["from"]);
-      value = polygon_exchange(from, corners(item["to"])).value / area(from);
+      const Polygon from = test::corners_of<dvec3>(item["from"]);
+      value = polygon_exchange(from, test::corners_of<dvec3>(item["to"])).value / area(from);
     } else {
-      const auto &p = item["from"]["position"], &n = item["from"]["normal"];
-      value =
-          point_form_factor({p[0], p[1], p[2]}, glm::normalize(dvec3(n[0], n[1], n[2])), corners(item["to"]));
+      value = point_form_factor(test::vector_of<dvec3>(item["from"]["position"]),
+                                glm::normalize(test::vector_of<dvec3>(item["from"]["normal"])),
+                                test::corners_of<dvec3>(item["to"]));
     }
     EXPECT_NEAR(value / exact, 1, 1e-11) << item["id"];
     ++pairs;

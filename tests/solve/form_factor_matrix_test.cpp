@@ -6,6 +6,7 @@
 
 #include "math/shared_cases.h"
 #include "solve/matrix/fold_surfaces.h"
+#include "solve/matrix/matrix_builder.h"
 
 namespace goldthread {
 namespace {

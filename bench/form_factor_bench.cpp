@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "solve/matrix/form_factor_matrix.h"
+#include "solve/matrix/matrix_builder.h"
 
 namespace goldthread {
 namespace {

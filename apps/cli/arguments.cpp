@@ -272,7 +272,7 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.max_memory)
       return usage_error("--max-memory: '" + texts.memory + "' is no size", "write 2G, 500M or bytes");
   }
-  if (const Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  if (Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
   return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
 }
 
@@ -291,7 +291,7 @@ Status finish_points(const std::string& text, ReferenceOptions& options) {
 
 Status finish_reference(const CLI::App& verb, const ReferenceTexts& texts, ReferenceOptions& options) {
   if (verb.count("--points") > 0)
-    if (const Status status = finish_points(texts.points, options); !status) return status;
+    if (Status status = finish_points(texts.points, options); !status) return status;
   if (verb.count("--samples") > 0) options.samples = texts.samples;
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--seed") > 0) options.seed = texts.seed;
@@ -300,7 +300,7 @@ Status finish_reference(const CLI::App& verb, const ReferenceTexts& texts, Refer
     if (!options.target_error)
       return usage_error("--target-error: '" + texts.target_error + "' is no share", "write 0.01 or 1%");
   }
-  if (const Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  if (Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
   return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
 }
 

@@ -87,6 +87,18 @@ double triangle_mean(const Function& f, const std::array<dvec3, 3>& corners) {
   return sum;
 }
 
+inline double triangle_area(const std::array<dvec3, 3>& corners) {
+  return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
+/// The four equal triangles between a triangle's corners and the middles of its sides, wound as it is: one at
+/// each corner, then the one between them.
+inline std::array<std::array<dvec3, 3>, 4> cut_in_four(const std::array<dvec3, 3>& corners) {
+  const auto& t = corners;
+  const dvec3 a = 0.5 * (t[1] + t[2]), b = 0.5 * (t[2] + t[0]), c = 0.5 * (t[0] + t[1]);
+  return {{{t[0], c, b}, {c, t[1], a}, {b, a, t[2]}, {a, b, c}}};
+}
+
 struct CubatureLimits {
   double relative = 1e-5;       ///< of the value
   double absolute = 0;          ///< in the value's unit
@@ -106,18 +118,11 @@ Estimate integrate_triangles(const Function& f, std::span<const std::array<dvec3
     bool operator<(const Cell& other) const { return error < other.error; }
   };
   size_t evaluations = 0;
-  const auto area = [](const std::array<dvec3, 3>& t) {
-    return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
-  };
-  const auto parts = [](const std::array<dvec3, 3>& t) {
-    const dvec3 a = 0.5 * (t[1] + t[2]), b = 0.5 * (t[2] + t[0]), c = 0.5 * (t[0] + t[1]);
-    return std::array<std::array<dvec3, 3>, 4>{{{t[0], c, b}, {c, t[1], a}, {b, a, t[2]}, {a, b, c}}};
-  };
   const auto cell = [&](const std::array<dvec3, 3>& corners, double coarse, double parent_error) {
     Cell out{corners, {}, 0, 0};
-    const auto quarters = parts(corners);
+    const auto quarters = cut_in_four(corners);
     for (size_t k = 0; k < 4; ++k)
-      out.value += out.quarters[k] = area(quarters[k]) * triangle_mean(f, quarters[k]);
+      out.value += out.quarters[k] = triangle_area(quarters[k]) * triangle_mean(f, quarters[k]);
     evaluations += 28;
     // Coarse and fine may agree by chance. Where the parent's did not they hardly do so for good: smooth
     // functions gain 2^8 from one to the next.
@@ -131,15 +136,16 @@ Estimate integrate_triangles(const Function& f, std::span<const std::array<dvec3
     cells.push(c);
   };
   for (const auto& triangle : triangles)
-    for (const auto& quarter : parts(triangle))
-      for (const auto& part : parts(quarter)) add(cell(part, area(part) * triangle_mean(f, part), 0));
+    for (const auto& quarter : cut_in_four(triangle))
+      for (const auto& part : cut_in_four(quarter))
+        add(cell(part, triangle_area(part) * triangle_mean(f, part), 0));
   while (!cells.empty() && evaluations < limits.evaluations &&
          sum.error > std::max(limits.absolute, limits.relative * std::abs(sum.value))) {
     const Cell worst = cells.top();
     if (worst.error <= 0) break;
     cells.pop();
     sum += {-worst.value, -worst.error};
-    const auto quarters = parts(worst.corners);
+    const auto quarters = cut_in_four(worst.corners);
     for (size_t k = 0; k < 4; ++k) add(cell(quarters[k], worst.quarters[k], worst.error));
   }
   // Summed anew: what was added and taken away has left its rounding.

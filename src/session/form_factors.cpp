@@ -10,6 +10,7 @@
 #include "session/form_factor_report.h"
 #include "session/watched.h"
 #include "solve/matrix/fold_surfaces.h"
+#include "solve/matrix/matrix_builder.h"
 #include "solve/matrix/shape_form_factor.h"
 
 namespace goldthread {

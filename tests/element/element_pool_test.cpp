@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/rng.h"
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 
 namespace goldthread {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 #include "mesh/dual_graph.h"
 
 namespace goldthread {

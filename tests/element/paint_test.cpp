@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "element/paint.h"
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 
 namespace goldthread {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 
 namespace goldthread {
 namespace {

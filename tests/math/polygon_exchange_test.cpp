@@ -5,10 +5,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 
-#include <filesystem>
-#include <fstream>
+#include "math/shared_cases.h"
 
 namespace goldthread {
 namespace {
@@ -70,6 +68,62 @@ TEST(PolygonExchange, FarAwayItIsThatOfTwoPoints) {
     EXPECT_NEAR(exchange.value / point, 1, 1 / distance);
     EXPECT_LT(exchange.error, 1e-6 * point);
   }
+}
+
+/// The exchange of two triangles far apart: Radon's rule on both, whose error falls with the sixth power of
+/// their distance.
+double distant_exchange(const Polygon& a, const Polygon& b) {
+  const std::array<dvec3, 3> from{a[0], a[1], a[2]}, to{b[0], b[1], b[2]};
+  const dvec3 n = plane_of(a).normal, m = plane_of(b).normal;
+  const auto kernel = [&](const dvec3& x) {
+    return triangle_mean(
+        [&](const dvec3& y) {
+          const dvec3 d = y - x;
+          const double squared = glm::dot(d, d);
+          return glm::dot(n, d) * -glm::dot(m, d) / (kPiExact * squared * squared);
+        },
+        to);
+  };
+  return area(a) * area(b) * triangle_mean(kernel, from);
+}
+
+TEST(PolygonExchange, FarAndAslantItIsRightToItsError) {
+  const Polygon a{{0, 0, 0}, {1, 0.1, 0.2}, {0.3, 0.8, -0.1}};
+  for (const double distance : {20.0, 50.0, 100.0, 300.0, 1e3, 1e4}) {
+    const dvec3 away = distance * glm::normalize(dvec3(0.3, 0.2, 0.9));
+    const Polygon b{away + dvec3(0, 0, 0), away + dvec3(0.2, 0.9, 0.3), away + dvec3(1, 0.2, -0.2)};
+    const Estimate exchange = polygon_exchange(a, b);
+    const double exact = distant_exchange(a, b);
+    EXPECT_LE(std::abs(exchange.value - exact), exchange.error + std::pow(distance, -6) * exact) << distance;
+    EXPECT_LT(exchange.error, 1e-14) << distance;
+  }
+}
+
+TEST(PolygonExchange, OfTwoThatCutEachOtherItsErrorCoversBothWays) {
+  // What is left of the second of the first pair is 4e-5 wide; of the other pair it is less.
+  const std::array<std::array<Polygon, 2>, 2> pairs{{
+      {Polygon{{0.266, 0.393, 0.051}, {0.901, -0.16, -0.663}, {0.888, -0.57, 0.53}},
+       Polygon{{0.463, 0.13, 1.193}, {-0.387, -0.28, 0.629}, {0.445, 0.142, -0.454}}},
+      {Polygon{{0.358, 0.706, 0.693}, {-0.799, -0.417, -0.74}, {-0.417, 0.6, -0.393}},
+       Polygon{{0.115, -0.288, 0.54}, {-0.51, -0.808, 1.114}, {-0.695, 0.278, -0.68}}},
+  }};
+  for (const auto& [a, b] : pairs) {
+    const Estimate there = polygon_exchange(a, b), back = polygon_exchange(b, a);
+    EXPECT_LE(std::abs(there.value - back.value), there.error + back.error);
+  }
+}
+
+TEST(PolygonExchange, LargeCoordinatesCostNoDigits) {
+  // Two that cut each other, moved without rounding: all coordinates are multiples of 1/64.
+  Polygon a{{0, 0, 0}, {1, 0.125, 0.25}, {0.25, 0.75, -0.125}},
+      b{{0.25, 0.125, -0.5}, {0.5, 1, 1.25}, {1.25, 0.25, 1}};
+  const Estimate here = polygon_exchange(a, b);
+  ASSERT_GT(here.value, 0.01);
+  for (Polygon* polygon : {&a, &b})
+    for (dvec3& p : *polygon) p += dvec3(1 << 22, 1 << 20, 1 << 23);
+  const Estimate moved = polygon_exchange(a, b);
+  EXPECT_LE(std::abs(moved.value - here.value), moved.error + here.error);
+  EXPECT_LT(moved.error, 1e-13);
 }
 
 TEST(PolygonExchange, BehindEachOtherNothing) {
@@ -179,28 +233,20 @@ TEST(Triangulate, CoversThePolygonOnce) {
 }
 
 TEST(PolygonExchange, SharedCases) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factors.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream stream(file);
-  const nlohmann::json cases = nlohmann::json::parse(stream)["cases"];
+  const test::Json cases = test::shared_cases("view_factors.json");
+  if (cases.is_null()) GTEST_SKIP() << test::kNoSharedCases;
   size_t pairs = 0;
   for (const auto& item : cases) {
-    const auto corners = [](const nlohmann::json& shape) {
-      Polygon polygon;
-      for (const auto& v : shape["vertices"])
-        polygon.emplace_back(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
-      return polygon;
-    };
     if (!item["occluders"].empty() || item["to"]["type"] != "polygon") continue;
     const double exact = item["value"];
     double value = 0;
     if (item["from"]["type"] == "polygon") {
-      const Polygon from = corners(item["from"]);
-      value = polygon_exchange(from, corners(item["to"])).value / area(from);
+      const Polygon from = test::corners_of<dvec3>(item["from"]);
+      value = polygon_exchange(from, test::corners_of<dvec3>(item["to"])).value / area(from);
     } else {
-      const auto &p = item["from"]["position"], &n = item["from"]["normal"];
-      value =
-          point_form_factor({p[0], p[1], p[2]}, glm::normalize(dvec3(n[0], n[1], n[2])), corners(item["to"]));
+      value = point_form_factor(test::vector_of<dvec3>(item["from"]["position"]),
+                                glm::normalize(test::vector_of<dvec3>(item["from"]["normal"])),
+                                test::corners_of<dvec3>(item["to"]));
     }
     EXPECT_NEAR(value / exact, 1, 1e-11) << item["id"];
     ++pairs;

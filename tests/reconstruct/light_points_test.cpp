@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 
 namespace goldthread {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 
 namespace goldthread {
 namespace {

@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
+#include "math/shared_cases.h"
 #include "solve/matrix/fold_surfaces.h"
+#include "solve/matrix/matrix_builder.h"
 
 namespace goldthread {
 namespace {
@@ -283,18 +281,12 @@ TEST(Closure, RowsFoundOneByOneAreScaledOneByOne) {
 }
 
 TEST(FormFactorMatrix, SharedRooms) {
-  const std::filesystem::path file =
-      std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factor_matrices.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream stream(file);
-  const nlohmann::json cases = nlohmann::json::parse(stream)["cases"];
+  const test::Json cases = test::shared_cases("view_factor_matrices.json");
+  if (cases.is_null()) GTEST_SKIP() << test::kNoSharedCases;
   EXPECT_EQ(cases.size(), 9u);
   for (const auto& item : cases) {
     PatchModel model;
-    for (const auto& surface : item["surfaces"]) {
-      Polygon& polygon = model.patches.emplace_back();
-      for (const auto& v : surface["vertices"]) polygon.emplace_back(v[0], v[1], v[2]);
-    }
+    for (const auto& surface : item["surfaces"]) model.patches.push_back(test::corners_of<dvec3>(surface));
     MatrixOptions options;
     options.method = MatrixMethod::kExact;
     const FormFactorMatrix matrix = built(model, options);

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "math/polygon_exchange.h"
+#include "math/shared_cases.h"
 #include "math/visible_polygon.h"
 
 namespace goldthread {
@@ -146,16 +144,9 @@ RC_GTEST_PROP(PolygonFormFactor, BlockersOnlyTakeAndReciprocityHolds, ()) {
 }
 
 TEST(PolygonFormFactor, SharedCasesWithOccluders) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factors.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream stream(file);
-  const nlohmann::json cases = nlohmann::json::parse(stream)["cases"];
-  const auto corners = [](const nlohmann::json& shape) {
-    Polygon polygon;
-    for (const auto& v : shape["vertices"])
-      polygon.emplace_back(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
-    return polygon;
-  };
+  const test::Json cases = test::shared_cases("view_factors.json");
+  if (cases.is_null()) GTEST_SKIP() << test::kNoSharedCases;
+  const auto corners = test::corners_of<dvec3>;
   size_t count = 0;
   for (const auto& item : cases) {
     if (item["occluders"].empty()) continue;
@@ -165,9 +156,9 @@ TEST(PolygonFormFactor, SharedCasesWithOccluders) {
     if (item["from"]["type"] == "polygon") {
       f = polygon_form_factor(corners(item["from"]), corners(item["to"]), occluders);
     } else {
-      const auto &p = item["from"]["position"], &n = item["from"]["normal"];
-      f = point_to_polygon({p[0], p[1], p[2]}, glm::normalize(dvec3(n[0], n[1], n[2])), corners(item["to"]),
-                           occluders);
+      f = point_to_polygon(test::vector_of<dvec3>(item["from"]["position"]),
+                           glm::normalize(test::vector_of<dvec3>(item["from"]["normal"])),
+                           corners(item["to"]), occluders);
     }
     const double exact = item["value"];
     EXPECT_NEAR(f.value, exact, 2e-5 * exact + 1e-14) << item["id"];

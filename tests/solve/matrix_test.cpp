@@ -2,11 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "element/paint.h"
+#include "scene/shared_rooms.h"
 #include "solve/solved_scene.h"
 
 namespace goldthread {
@@ -115,25 +113,11 @@ TEST(Matrix, ClosedBoxOfSixReflectances) {
 class SharedCase : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedCase, MeansOfSurfaces) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/gi_scenes.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the shared accuracy cases are not here: " << file;
-  const nlohmann::json all = nlohmann::json::parse(std::ifstream(file));
-  const nlohmann::json* found = nullptr;
-  for (const auto& c : all["cases"])
-    if (c["id"] == GetParam()) found = &c;
-  ASSERT_NE(found, nullptr);
+  const test::Json room = test::shared_room(GetParam());
+  if (room.is_null()) GTEST_SKIP() << test::kNoSharedCases;
   Scene scene;
-  std::vector<std::string> names;
-  const auto colour = [](const nlohmann::json& v) {
-    return vec3(v[0].get<float>(), v[1].get<float>(), v[2].get<float>());
-  };
-  for (const auto& surface : (*found)["surfaces"]) {
-    std::vector<vec3> corners;
-    for (const auto& v : surface["vertices"]) corners.push_back(colour(v));
-    names.push_back(surface["name"]);
-    test::add(scene, test::polygon(corners),
-              test::add(scene, test::diffuse(colour(surface["rho"]), colour(surface["emit"]))));
-  }
+  test::add_surfaces(scene, room);
+  const std::vector<std::string> names = test::surface_names(room);
   Solved solved(std::move(scene));
   solved.solve();
   std::vector<dvec3> irradiance(names.size(), dvec3(0)), radiosity(names.size(), dvec3(0));
@@ -151,7 +135,7 @@ TEST_P(SharedCase, MeansOfSurfaces) {
     total += area[i];
     landing += irradiance[i].y;
   }
-  for (const auto& expect : (*found)["expect"]) {
+  for (const auto& expect : room["expect"]) {
     if (!expect.contains("surface")) continue;
     const size_t i =
         size_t(std::find(names.begin(), names.end(), expect["surface"].get<std::string>()) - names.begin());
@@ -175,11 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Rooms, SharedCase,
                                            "gi-p-hetero-lroom", "gi-p-hetero-facet8", "gi-p-black-box",
                                            "gi-p-black-lroom", "gi-p-cube-ceiling", "gi-p-globillum-room",
                                            "gi-p-lroom-colour", "gi-p-cornell-rgb"),
-                         [](const auto& info) {
-                           std::string name(info.param + 5);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         test::CaseName());
 
 }  // namespace
 }  // namespace goldthread

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "element/overlap.h"
-#include "element/small_scenes.h"
-#include "scene/procedural.h"
+#include "element/small_elements.h"
 #include "solve/hierarchical/solver.h"
 #include "visibility/coincident.h"
 
@@ -80,12 +79,6 @@ Summary summarise(const Solved& solved, const Value& value) {
   }
   s.mean /= s.area;
   return s;
-}
-
-inline Scene procedural(std::string_view name, uint64_t triangles = 0) {
-  Result<Scene> scene = build_procedural(name, triangles);
-  if (!scene) throw std::runtime_error(scene.error().line());
-  return *std::move(scene);
 }
 
 /// Effort for tests that need a right answer but not a fine one.

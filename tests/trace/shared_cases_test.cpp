@@ -1,35 +1,13 @@
 // Radiosity with exact answers, from the shared collection of accuracy cases.
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
+#include "scene/shared_rooms.h"
 #include "trace/traced.h"
 
 namespace goldthread {
 namespace {
 
 using namespace test;
-using Json = nlohmann::json;
-
-/// The case, or null when the collection is not here.
-Json shared_case(const std::string& id) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/gi_scenes.json";
-  if (!std::filesystem::exists(file)) return {};
-  const Json all = Json::parse(std::ifstream(file));
-  for (const auto& c : all["cases"])
-    if (c["id"] == id) return c;
-  ADD_FAILURE() << "there is no case " << id;
-  return {};
-}
-
-vec3 vector_of(const Json& v) {
-  return {v[0].get<float>(), v[1].get<float>(), v[2].get<float>()};
-}
-dvec3 exact_vector_of(const Json& v) {
-  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
-}
-
 /// A sphere of so many rings. Its facets lie within the ball, by about this share of the radius at most.
 constexpr uint32_t kRings = 96;
 constexpr double kFlatness = 0.5 * (3.1416 / kRings) * (3.1416 / kRings);
@@ -54,29 +32,22 @@ void add_primitive(Scene& scene, const Json& primitive) {
   if (primitive.contains("zones")) {
     for (const auto& zone : primitive["zones"]) {
       const float sign = zone["where"] == "z>0" ? 1.0f : -1.0f;
-      add(scene, ball(radius, inside, [&](const vec3& p) { return sign * p.z > 0; }),
-          diffuse(vector_of(zone["rho"]), vector_of(zone["emit"])));
+      add(scene, ball(radius, inside, [&](const vec3& p) { return sign * p.z > 0; }), material_of(zone));
     }
   } else {
-    add(scene, ball(radius, inside, [](const vec3&) { return true; }),
-        diffuse(vector_of(primitive["rho"]), vector_of(primitive["emit"])));
+    add(scene, ball(radius, inside, [](const vec3&) { return true; }), material_of(primitive));
   }
 }
 
 Scene scene_of(const Json& c) {
   Scene scene;
-  if (c.contains("surfaces"))
-    for (const auto& surface : c["surfaces"]) {
-      std::vector<vec3> corners;
-      for (const auto& v : surface["vertices"]) corners.push_back(vector_of(v));
-      add(scene, polygon(corners), diffuse(vector_of(surface["rho"]), vector_of(surface["emit"])));
-    }
+  add_surfaces(scene, c);
   if (c.contains("primitives"))
     for (const auto& primitive : c["primitives"]) add_primitive(scene, primitive);
   if (c.contains("lights"))
     for (const auto& light : c["lights"]) {
-      scene.lights.push_back(lamp(LightKind::kPoint, 1, vector_of(light["position"])));
-      scene.lights.back().intensity = vector_of(light["intensity"]);
+      scene.lights.push_back(lamp(LightKind::kPoint, 1, vector_of<vec3>(light["position"])));
+      scene.lights.back().intensity = vector_of<vec3>(light["intensity"]);
     }
   return scene;
 }
@@ -108,15 +79,15 @@ std::vector<Receiver> points_of(const Traced& t, uint32_t part, size_t count) {
 class SharedRoom : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedRoom, UniformRadiosity) {
-  const Json c = shared_case(GetParam());
-  if (c.is_null()) GTEST_SKIP() << "the shared accuracy cases are not here";
+  const Json c = shared_room(GetParam());
+  if (c.is_null()) GTEST_SKIP() << kNoSharedCases;
   const Traced t(scene_of(c));
   size_t part = 0;
   for (const auto& expect : c["expect"]) {
     ASSERT_EQ(expect["quantity"], "uniform_radiosity");
     const Material& m = t.scene->materials[part];
     const IrradianceValue e = t.mean(points_of(t, static_cast<uint32_t>(part), 16), 1024);
-    const dvec3 radiosity = exact_vector_of(expect["value"]);
+    const dvec3 radiosity = vector_of<dvec3>(expect["value"]);
     for (int k = 0; k < 3; ++k) {
       const double reflected = radiosity[k] - double(m.emission[k]) * double(kPi);
       EXPECT_NEAR(double(m.base_colour[k]) * e.mean[k], reflected,
@@ -131,25 +102,22 @@ TEST_P(SharedRoom, UniformRadiosity) {
 INSTANTIATE_TEST_SUITE_P(Rooms, SharedRoom,
                          ::testing::Values("gi-p-furnace-cube", "gi-p-furnace-lroom", "gi-p-furnace-facet8",
                                            "gi-p-hetero-lroom", "gi-p-hetero-facet8"),
-                         [](const auto& info) {
-                           std::string name(info.param + 5);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         CaseName());
 
 /// Cases that give irradiance at points.
 class SharedPoints : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedPoints, Irradiance) {
-  const Json c = shared_case(GetParam());
-  if (c.is_null()) GTEST_SKIP() << "the shared accuracy cases are not here";
+  const Json c = shared_room(GetParam());
+  if (c.is_null()) GTEST_SKIP() << kNoSharedCases;
   const Traced t(scene_of(c));
   size_t checked = 0;
   for (const auto& expect : c["expect"]) {
     if (!expect.contains("point")) continue;
-    const vec3 normal = vector_of(expect["normal"]);
-    expect_estimates(t.at(vector_of(expect["point"]), normal, 16384, checked),
-                     exact_vector_of(expect["value"]), 0.01, c.contains("primitives") ? 4 * kFlatness : 1e-3);
+    const vec3 normal = vector_of<vec3>(expect["normal"]);
+    expect_estimates(t.at(vector_of<vec3>(expect["point"]), normal, 16384, checked),
+                     vector_of<dvec3>(expect["value"]), 0.01,
+                     c.contains("primitives") ? 4 * kFlatness : 1e-3);
     ++checked;
   }
   EXPECT_GT(checked, 0u);
@@ -159,11 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Points, SharedPoints,
                          ::testing::Values("gi-p-direct-parallel", "gi-p-direct-perp", "gi-p-nori-polylum-1",
                                            "gi-p-nori-polylum-2", "gi-p-nori-polylum-3",
                                            "gi-p-sphere-offcentre-light-1"),
-                         [](const auto& info) {
-                           std::string name(info.param + 5);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         CaseName());
 
 /// The mean over a surface: of few samples each at many places, whose spread holds both errors.
 IrradianceValue surface_mean(const Traced& t, uint32_t part) {
@@ -183,11 +147,10 @@ IrradianceValue surface_mean(const Traced& t, uint32_t part) {
 class SharedMeans : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedMeans, IrradianceOfSurfaces) {
-  const Json c = shared_case(GetParam());
-  if (c.is_null()) GTEST_SKIP() << "the shared accuracy cases are not here";
+  const Json c = shared_room(GetParam());
+  if (c.is_null()) GTEST_SKIP() << kNoSharedCases;
   const Traced t(scene_of(c));
-  std::vector<std::string> names;
-  for (const auto& surface : c["surfaces"]) names.push_back(surface["name"]);
+  const std::vector<std::string> names = surface_names(c);
   double squares = 0;
   int checked = 0;
   for (const auto& expect : c["expect"]) {
@@ -213,18 +176,14 @@ TEST_P(SharedMeans, IrradianceOfSurfaces) {
 INSTANTIATE_TEST_SUITE_P(Rooms, SharedMeans,
                          ::testing::Values("gi-p-black-box", "gi-p-black-lroom", "gi-p-cube-ceiling",
                                            "gi-p-globillum-room", "gi-p-lroom-colour", "gi-p-cornell-rgb"),
-                         [](const auto& info) {
-                           std::string name(info.param + 5);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         CaseName());
 
 // Smooth shapes, finely tessellated: the answer is theirs to the square of the facets' size.
 class SharedBalls : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedBalls, UniformRadiosityOfEachPart) {
-  const Json c = shared_case(GetParam());
-  if (c.is_null()) GTEST_SKIP() << "the shared accuracy cases are not here";
+  const Json c = shared_room(GetParam());
+  if (c.is_null()) GTEST_SKIP() << kNoSharedCases;
   const Traced t(scene_of(c));
   uint32_t part = 0;
   for (const auto& expect : c["expect"]) {
@@ -245,11 +204,7 @@ TEST_P(SharedBalls, UniformRadiosityOfEachPart) {
 INSTANTIATE_TEST_SUITE_P(Balls, SharedBalls,
                          ::testing::Values("gi-p-sphere-point-light", "gi-p-sphere-emitting",
                                            "gi-p-sphere-two-zones", "gi-p-concentric-spheres-1"),
-                         [](const auto& info) {
-                           std::string name(info.param + 5);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         CaseName());
 
 }  // namespace
 }  // namespace goldthread

@@ -1,4 +1,4 @@
-// Scenes put together in a few words, a path tracer over them, and what its estimates are held to.
+// A path tracer over small scenes, and what its estimates are held to.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -6,65 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/shapes.h"
-#include "scene/procedural.h"
+#include "scene/small_scenes.h"
 #include "trace/irradiance_estimate.h"
 
 namespace goldthread::test {
-
-/// A diffuse one-sided material; exitance in lm/m2.
-inline Material diffuse(const vec3& reflectance, const vec3& exitance = vec3(0)) {
-  Material material;
-  material.base_colour = reflectance;
-  material.metallic = 0;
-  material.emission = exitance / kPi;
-  return material;
-}
-inline Material diffuse(float reflectance, float exitance = 0) {
-  return diffuse(vec3(reflectance), vec3(exitance));
-}
-
-/// A mesh of one primitive with one instance, which is returned for changes.
-inline Primitive& add(Scene& scene, const shapes::Soup& soup, Material material,
-                      const mat4& transform = mat4(1)) {
-  Primitive primitive;
-  primitive.positions = soup.positions;
-  primitive.indices = soup.indices;
-  primitive.material = static_cast<uint32_t>(scene.materials.size());
-  scene.materials.push_back(std::move(material));
-  scene.meshes.emplace_back();
-  scene.meshes.back().primitives.push_back(std::move(primitive));
-  scene.instances.push_back({static_cast<uint32_t>(scene.meshes.size() - 1), transform, 0, {}});
-  return scene.meshes.back().primitives.back();
-}
-
-/// The polygon's fan of triangles; its front is where it runs counter-clockwise.
-inline shapes::Soup polygon(std::vector<vec3> corners) {
-  shapes::Soup soup;
-  for (uint32_t i = 1; i + 1 < corners.size(); ++i) soup.triangle(0, i, i + 1);
-  soup.positions = std::move(corners);
-  return soup;
-}
-
-/// A square of the plane z = `height` around the z axis that faces up, or down.
-inline shapes::Soup square(float half, float height, bool up) {
-  const vec3 a(-half, -half, height), b(half, -half, height), c(half, half, height), d(-half, half, height);
-  return polygon(up ? std::vector{a, b, c, d} : std::vector{a, d, c, b});
-}
-
-inline shapes::Soup turned(shapes::Soup soup) {
-  for (size_t i = 0; i < soup.indices.size(); i += 3) std::swap(soup.indices[i + 1], soup.indices[i + 2]);
-  return soup;
-}
-
-inline Light lamp(LightKind kind, float intensity, const vec3& position, const vec3& direction = {0, 0, -1}) {
-  Light light;
-  light.kind = kind;
-  light.intensity = vec3(intensity);
-  light.position = position;
-  light.direction = direction;
-  return light;
-}
 
 /// A scene with its path tracer; keeps all where they are.
 struct Traced {
@@ -109,12 +54,6 @@ struct Traced {
     return mean;
   }
 };
-
-inline Scene procedural(std::string_view name, uint64_t triangles = 0) {
-  Result<Scene> scene = build_procedural(name, triangles);
-  if (!scene) throw std::runtime_error(scene.error().line());
-  return *std::move(scene);
-}
 
 /// Within three standard errors of the truth, and these small enough to mean anything. `slack` is the truth's
 /// own error where it is that of a smooth shape; besides, rays start an epsilon above their surface.

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
 #include "math/form_factor.h"
+#include "math/shared_cases.h"
 
 namespace goldthread {
 namespace {
@@ -409,26 +407,18 @@ TEST(Hemicube, TheSeedMovesTheJitter) {
 
 /// Points and polygons of the shared collection, with what stands between.
 TEST(Hemicube, SharedPointToPolygonFactors) {
-  const std::filesystem::path file = std::filesystem::path(GOLDTHREAD_SHARED) / "accuracy/view_factors.json";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the shared accuracy cases are not here: " << file;
-  const nlohmann::json all = nlohmann::json::parse(std::ifstream(file));
-  const auto vector = [](const nlohmann::json& v) {
-    return vec3(v[0].get<float>(), v[1].get<float>(), v[2].get<float>());
-  };
-  const auto add = [&](World& world, const nlohmann::json& polygon) {
-    std::vector<vec3> corners;
-    for (const auto& v : polygon["vertices"]) corners.push_back(vector(v));
-    world.polygon(corners);
-  };
+  const test::Json cases = test::shared_cases("view_factors.json");
+  if (cases.is_null()) GTEST_SKIP() << test::kNoSharedCases;
   size_t checked = 0, occluded = 0;
-  for (const auto& c : all["cases"]) {
+  for (const auto& c : cases) {
     if (c["from"]["type"] != "point" || c["to"]["type"] != "polygon") continue;
     World world;
-    add(world, c["to"]);
+    world.polygon(test::corners_of<vec3>(c["to"]));
     const auto target = static_cast<uint32_t>(world.triangles.size());
-    for (const auto& occluder : c["occluders"]) add(world, occluder);
+    for (const auto& occluder : c["occluders"]) world.polygon(test::corners_of<vec3>(occluder));
     const RayCaster caster = world.caster();
-    const vec3 x = vector(c["from"]["position"]), n = normalize(vector(c["from"]["normal"]));
+    const vec3 x = test::vector_of<vec3>(c["from"]["position"]),
+               n = normalize(test::vector_of<vec3>(c["from"]["normal"]));
     for (const ScanOptions& options : {ScanOptions{1, 0.5f}, ScanOptions{4, 0.5f, 1}}) {
       const HemisphereScan scan = scan_hemisphere(caster, DirectionGrid::hemicube(64), x, n, options);
       double seen = 0, error = 1e-5;

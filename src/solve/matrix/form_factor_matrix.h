@@ -1,43 +1,12 @@
-// All form factors of a model of polygons: the matrix of the classical methods.
+// The form factors of all pairs of a model, and the two laws that they should keep: closure and reciprocity.
 #pragma once
 #include <cstdint>
-#include <functional>
-#include <span>
 #include <vector>
 
-#include "base/progress.h"
 #include "goldthread/error.h"
 #include "solve/matrix/form_factor_pair.h"
 
 namespace goldthread {
-
-/// Polygons that exchange light with their fronts and block with both sides. Planar and simple each.
-struct PatchModel {
-  std::vector<Polygon> patches;
-  std::vector<Polygon> occluders;  ///< only block
-};
-
-enum class MatrixMethod {
-  kAuto,      ///< exact up to kMostExact patches and occluders, else rays
-  kExact,     ///< visible_exchange a pair
-  kRays,      ///< closed forms for what is exchanged with nothing in between, rays for the share that is seen
-  kHemicube,  ///< rows by hemicubes at a patch's points (Cohen and Greenberg 1985)
-  kCubicTetrahedron,  ///< the same by cubic tetrahedra (Beran-Koehn and Pavicic 1991)
-  kSinglePlane,       ///< the same by single planes (Sillion and Puech 1989), which miss the horizon
-};
-constexpr size_t kMostExact = 100;
-
-struct MatrixOptions {
-  MatrixMethod method = MatrixMethod::kAuto;
-  CubatureLimits limits{1e-4, 1e-9, 40000};  ///< exact; the absolute one of a patch's area
-  uint32_t rays = 16;                        ///< a pair, 1..64
-  uint32_t resolution = 64;                  ///< of hemicubes and their kin, cells
-  uint32_t samples_across = 2;               ///< of a cell: 1 through its middle, k for k x k jittered rays
-  double plane_half_width = 4;               ///< of single planes, in units of their height
-  uint32_t environment_rays = 1024;          ///< a patch
-  uint32_t seed = 0;
-  uint64_t max_memory = 0;  ///< bytes for the matrix, 0 for no limit
-};
 
 /// Exchange areas, sparse: of each pair that exchanges anything once, in its lower-numbered row.
 struct FormFactorMatrix {
@@ -64,18 +33,15 @@ struct FormFactorMatrix {
   std::vector<double> row_error_bounds() const;  ///< of these sums
 };
 
-/// `progress` is told the share done, from one thread at a time. When cancelled: ErrorCode::kCancelled.
-Result<FormFactorMatrix> build_form_factor_matrix(const PatchModel& model, const MatrixOptions& options,
-                                                  const CancelToken& cancel,
-                                                  const std::function<void(double)>& progress = {});
-
 /// Gives both directions of every pair their mean. Returns what reciprocity_error was.
 double enforce_reciprocity(FormFactorMatrix& matrix);
 
 /// Scales exchanges so that each row and what its environment and backs take sum to one, both ways alike: the
 /// matrix stays symmetric if it is, and no entry changes its sign (Sinkhorn 1967; rows that were found one by
-/// one are scaled one by one). Returns the largest relative change of an entry, or an error where no scaling
-/// does it: a row without entries, or rows that do not come together.
+/// one are scaled one by one). Rows of which environment and backs take all stay as they are. Returns the
+/// largest relative change of an entry. Fails, and leaves the matrix as it was, on a row without entries that
+/// should have some (ErrorCode::kBadInput), and on rows that do not converge: still more than 1e-9 off one
+/// after 10000 rounds of scaling (ErrorCode::kLimit).
 Result<double> enforce_closure(FormFactorMatrix& matrix);
 
 }  // namespace goldthread

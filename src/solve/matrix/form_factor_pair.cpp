@@ -59,8 +59,7 @@ Estimate integrate_visible(std::span<const dvec3> from, std::span<const dvec3> t
   const std::vector<Polygon> targets = convex_parts(to);
   const auto visible = [&](const dvec3& x) { return visible_form_factor(x, n, targets, blockers); };
   double rough = 0;
-  for (const auto& t : triangles)
-    rough += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0])) * triangle_mean(visible, t);
+  for (const auto& t : triangles) rough += triangle_area(t) * triangle_mean(visible, t);
   if (rough < 0.5 * exchange.value) return integrate_triangles(visible, triangles, limits);
   const auto hidden = [&](const dvec3& x) { return std::max(0.0, point_form_factor(x, n, to) - visible(x)); };
   CubatureLimits allowed = limits;

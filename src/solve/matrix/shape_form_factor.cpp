@@ -322,7 +322,7 @@ Result<FormFactor> shape_form_factor(const Shape& from, const Shape& to, std::sp
   }
   // The other way round, by A1 F12 = A2 F21, where that has no horizons in it or is the only one known.
   if (is_cylinder_inside(to) || (is_convex_body(from) && !is_convex_body(to))) {
-    const Result<FormFactor> back = mean_over(to, from, limits);
+    Result<FormFactor> back = mean_over(to, from, limits);
     if (!back) return back;
     const double scale = shape_area(to) / shape_area(from);
     return FormFactor{std::clamp(back->value * scale, 0.0, 1.0), back->error_bound * scale, back->method};

@@ -1,19 +1,17 @@
 // Scenes put together in a few words, for the tests of the light rooms.
 #pragma once
-#include <memory>
-#include <random>
-#include <string>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "element/element_pool.h"
-#include "element/surface_set.h"
 #include "mesh/shapes.h"
+#include "scene/procedural.h"
 #include "scene/scene.h"
 
 namespace goldthread::test {
 
-/// A diffuse material; exitance in lm/m^2.
+/// A diffuse one-sided material; exitance in lm/m².
 inline Material diffuse(const vec3& reflectance, const vec3& exitance = vec3(0)) {
   Material material;
   material.base_colour = reflectance;
@@ -45,12 +43,25 @@ inline uint32_t add(Scene& scene, const shapes::Soup& soup, uint32_t material,
   return number;
 }
 
-/// The polygon's fan of triangles, sending to the side from which it runs counter-clockwise.
+/// The same with a material of its own. Returns the primitive, for changes.
+inline Primitive& add(Scene& scene, const shapes::Soup& soup, Material material,
+                      const mat4& transform = mat4(1)) {
+  const uint32_t mesh = add(scene, soup, add(scene, std::move(material)), transform);
+  return scene.meshes[mesh].primitives.back();
+}
+
+/// The polygon's fan of triangles; its front is where it runs counter-clockwise.
 inline shapes::Soup polygon(std::vector<vec3> corners) {
   shapes::Soup soup;
   for (uint32_t i = 1; i + 1 < corners.size(); ++i) soup.triangle(0, i, i + 1);
   soup.positions = std::move(corners);
   return soup;
+}
+
+/// A square of the plane z = `height` around the z axis that faces up, or down.
+inline shapes::Soup square(float half, float height, bool up) {
+  const vec3 a(-half, -half, height), b(half, -half, height), c(half, half, height), d(-half, half, height);
+  return polygon(up ? std::vector{a, b, c, d} : std::vector{a, d, c, b});
 }
 
 /// n by n quads of the parallelogram, facing cross(across, up).
@@ -80,52 +91,19 @@ inline mat4 turn(float angle, const vec3& axis) {
   return glm::mat4_cast(glm::angleAxis(angle, normalize(axis)));
 }
 
-/// Numbers that are the same on every machine.
-struct Random {
-  std::mt19937 engine;
-  explicit Random(uint32_t seed) : engine(seed) {}
-  float in(float low, float high) {
-    return low + (high - low) * static_cast<float>(engine() >> 8) * 0x1p-24f;
-  }
-  uint32_t below(uint32_t count) { return uint32_t(engine() % count); }
-  vec3 point() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
-  vec3 direction() {
-    const float z = in(-1, 1), angle = in(0, 2 * kPi), r = std::sqrt(std::max(0.0f, 1 - z * z));
-    return normalize(vec3(r * std::cos(angle), r * std::sin(angle), z));
-  }
-};
+inline Light lamp(LightKind kind, float intensity, const vec3& position, const vec3& direction = {0, 0, -1}) {
+  Light light;
+  light.kind = kind;
+  light.intensity = vec3(intensity);
+  light.position = position;
+  light.direction = direction;
+  return light;
+}
 
-/// A scene with its surfaces and elements; keeps all three where they are.
-struct Elements {
-  std::unique_ptr<Scene> scene;
-  std::unique_ptr<SurfaceSet> set;
-  std::unique_ptr<ElementPool> pool;
-
-  explicit Elements(Scene s) : scene(std::make_unique<Scene>(std::move(s))) {
-    set = std::make_unique<SurfaceSet>(build_surfaces(*scene, CancelToken()));
-    pool = std::make_unique<ElementPool>(*set);
-  }
-
-  /// Childless elements of surfaces and lights, ascending.
-  std::vector<ElementId> leaves() const {
-    std::vector<ElementId> out;
-    for (ElementId id = 0; id < pool->size(); ++id)
-      if ((*pool)[id].first_child == kNoElement) out.push_back(id);
-    return out;
-  }
-  /// Makes children everywhere, `times` over.
-  void expand(int times) {
-    for (int i = 0; i < times; ++i) pool->expand(leaves());
-  }
-  /// Makes children of a random share of the leaves, `times` over.
-  void expand_some(Random& random, int times, float share) {
-    for (int i = 0; i < times; ++i) {
-      std::vector<ElementId> some;
-      for (const ElementId id : leaves())
-        if (random.in(0, 1) < share) some.push_back(id);
-      pool->expand(some);
-    }
-  }
-};
+inline Scene procedural(std::string_view name, uint64_t triangles = 0) {
+  Result<Scene> scene = build_procedural(name, triangles);
+  if (!scene) throw std::runtime_error(scene.error().line());
+  return *std::move(scene);
+}
 
 }  // namespace goldthread::test

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "element/small_scenes.h"
+#include "element/small_elements.h"
 #include "math/far_form_factor.h"
 #include "math/polygon_exchange.h"
 

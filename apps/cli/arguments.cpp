@@ -210,7 +210,9 @@ void add_reference(CLI::App& app, ReferenceCommand& reference, ReferenceTexts& t
       ->type_name("N|FILE")
       ->group(group);
   verb->add_flag("--vertices", options.vertices, "irradiance at all vertices")->group(group);
-  verb->add_option("--resume", options.resume_file, "more samples for the points of an earlier --json FILE")
+  verb->add_option("--resume", options.resume_file,
+                   "more samples for the points of an earlier --json FILE,\nor with -o for the pixels of an "
+                   "earlier -o FILE.exr")
       ->type_name("FILE")
       ->group(group);
   verb->add_option("-o", options.pictures, "a picture, .png or .exr; more than once")

@@ -11,15 +11,18 @@
 
 namespace goldthread {
 
-/// What to measure is one of: `points_file`, `random_points`, `vertices`, `resume_file`, `pictures`.
+/// What to measure is one of: `points_file`, `random_points`, `vertices`, `resume_file`, `pictures`; the last
+/// two together go on with a picture.
 struct ReferenceOptions {
   std::string input;  ///< scene, as in BakeOptions
 
-  std::string points_file;            ///< JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres
-  uint64_t random_points = 0;         ///< spread over all lit sides by area
-  bool vertices = false;              ///< all vertices of all instances
-  std::string resume_file;            ///< go on from an earlier `json_file` of the same scene and light
-  std::vector<std::string> pictures;  ///< .png .exr: radiance through the scene's camera
+  std::string points_file;     ///< JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres
+  uint64_t random_points = 0;  ///< spread over all lit sides by area
+  bool vertices = false;       ///< all vertices of all instances
+  /// Go on from an earlier `json_file` of the same scene and light, or, for `pictures`, from an .exr.
+  std::string resume_file;
+  std::vector<std::string> pictures;  ///< .png .exr: radiance through the scene's camera; an .exr
+                                      ///< also holds each pixel's samples and standard error
 
   std::string json_file;    ///< results of points; empty for none, "-" for standard output
   std::string report_file;  ///< figures of the run as JSON, empty for none
@@ -51,7 +54,8 @@ struct ReferenceResult {
 
 /// Path traces the scene with next-event estimation, multiple importance sampling and Russian roulette. The
 /// same seed gives the same numbers for any number of threads, and continued runs give the same as
-/// uninterrupted ones. On cancellation, within a second, what there is is written and `cancelled` is set.
+/// uninterrupted ones; of pictures, to single precision. On cancellation, within a second, what there is is
+/// written and `cancelled` is set.
 Result<ReferenceResult> reference(const ReferenceOptions& options, const BakeListener& listener = {});
 
 }  // namespace goldthread

@@ -4,6 +4,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@
 namespace goldthread {
 namespace {
 
-Result<FloatImage> read_exr(const std::string& file) {
+/// `more`, where it is given, takes what is in the file besides colour.
+Result<FloatImage> read_exr(const std::string& file, LayeredImage* more) {
   try {
     Imf::InputFile input(file.c_str());
     const Imath::Box2i window = input.header().dataWindow();
@@ -37,12 +39,29 @@ Result<FloatImage> read_exr(const std::string& file) {
     image.pixels.resize(size_t{image.width} * image.height);
     Imf::FrameBuffer frame;
     const char* names[3] = {grey ? "Y" : "R", "G", "B"};
-    // Imf wants the address of pixel (0, 0), which may lie outside the window.
-    auto* base = reinterpret_cast<char*>(image.pixels.data()) -
-                 (window.min.x + window.min.y * width) * static_cast<int64_t>(sizeof(vec3));
+    const auto add = [&](const std::string& name, float* first, size_t stride) {
+      // Imf wants the address of pixel (0, 0), which may lie outside the window.
+      char* base = reinterpret_cast<char*>(first) -
+                   (window.min.x + window.min.y * width) * static_cast<int64_t>(stride);
+      frame.insert(name, Imf::Slice(Imf::FLOAT, base, stride, stride * image.width));
+    };
+    auto* pixels = reinterpret_cast<float*>(image.pixels.data());
     for (size_t channel = 0; channel < (grey ? 1 : 3); ++channel)
-      frame.insert(names[channel], Imf::Slice(Imf::FLOAT, base + channel * sizeof(float), sizeof(vec3),
-                                              sizeof(vec3) * image.width));
+      add(names[channel], pixels + channel, sizeof(vec3));
+    if (more != nullptr) {
+      const Imf::ChannelList& channels = input.header().channels();
+      for (auto c = channels.begin(); c != channels.end(); ++c) {
+        const std::string name = c.name();
+        if (c.channel().type != Imf::FLOAT || name == "R" || name == "G" || name == "B" || name == "Y")
+          continue;
+        std::vector<float>& layer = more->layers[name];
+        layer.resize(image.pixels.size());
+        add(name, layer.data(), sizeof(float));
+      }
+      for (auto a = input.header().begin(); a != input.header().end(); ++a)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+          more->notes[a.name()] = text->value();
+    }
     input.setFrameBuffer(frame);
     input.readPixels(window.min.y, window.max.y);
     if (grey)
@@ -60,7 +79,7 @@ Result<FloatImage> read_picture(const std::string& file) {
   const Result<Bytes> bytes = read_file_bytes(file);
   if (!bytes) return bytes.error();
   const std::string extension = file_extension(file);
-  if (extension == ".exr") return read_exr(file);
+  if (extension == ".exr") return read_exr(file, nullptr);
   const Result<Image> encoded = decode_image(*bytes);
   if (!encoded) {
     Error error = encoded.error();
@@ -76,6 +95,15 @@ Result<FloatImage> read_picture(const std::string& file) {
       image.pixels[i][k] =
           srgb_to_linear(static_cast<float>(encoded->rgba[4 * i + static_cast<size_t>(k)]) / 255.0f);
   return image;
+}
+
+Result<LayeredImage> read_layered_exr(const std::string& file) {
+  if (const Result<Bytes> bytes = read_file_bytes(file); !bytes) return bytes.error();
+  LayeredImage layered;
+  Result<FloatImage> image = read_exr(file, &layered);
+  if (!image) return image.error();
+  layered.image = std::move(*image);
+  return layered;
 }
 
 }  // namespace goldthread

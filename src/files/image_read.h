@@ -11,4 +11,7 @@ namespace goldthread {
 /// of at most kLargestImageSide.
 Result<FloatImage> read_picture(const std::string& file);
 
+/// An .exr with all its other float channels as layers and its text attributes as notes.
+Result<LayeredImage> read_layered_exr(const std::string& file);
+
 }  // namespace goldthread

@@ -5,6 +5,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
 
 #include <cmath>
 #include <cstdint>
@@ -34,16 +35,21 @@ uint8_t to_byte(float linear) {
 }
 
 /// The EXR file in memory, so that disk trouble is AtomicFile's to report.
-std::string encode_exr(const FloatImage& image) {
+std::string encode_exr(const FloatImage& image, const LayeredImage* more) {
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
+  const auto add = [&](const std::string& name, const float* first, size_t stride) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    auto* base = reinterpret_cast<char*>(const_cast<float*>(first));  // Imf reads only
+    frame.insert(name, Imf::Slice(Imf::FLOAT, base, stride, stride * image.width));
+  };
   const char* names[3] = {"R", "G", "B"};
-  auto* base = reinterpret_cast<char*>(const_cast<vec3*>(image.pixels.data()));  // Imf reads only
-  for (size_t channel = 0; channel < 3; ++channel) {
-    header.channels().insert(names[channel], Imf::Channel(Imf::FLOAT));
-    frame.insert(names[channel], Imf::Slice(Imf::FLOAT, base + channel * sizeof(float), sizeof(vec3),
-                                            sizeof(vec3) * image.width));
+  const auto* pixels = reinterpret_cast<const float*>(image.pixels.data());
+  for (size_t channel = 0; channel < 3; ++channel) add(names[channel], pixels + channel, sizeof(vec3));
+  if (more != nullptr) {
+    for (const auto& [name, values] : more->layers) add(name, values.data(), sizeof(float));
+    for (const auto& [name, text] : more->notes) header.insert(name, Imf::StringAttribute(text));
   }
   Imf::StdOSStream stream;
   {
@@ -52,6 +58,17 @@ std::string encode_exr(const FloatImage& image) {
     output.writePixels(static_cast<int>(image.height));
   }
   return stream.str();
+}
+
+Status write_exr(const std::string& file, const FloatImage& image, const LayeredImage* more) {
+  constexpr uint32_t kLargest = 1u << 30;  // Imf counts in int
+  if (!consistent(image) || image.width > kLargest || image.height > kLargest) return not_a_picture(file);
+  try {
+    const std::string bytes = encode_exr(image, more);
+    return write_file_atomically(file, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kCannotWrite, std::string("OpenEXR: ") + failure.what(), file, "", ""};
+  }
 }
 
 }  // namespace
@@ -69,14 +86,13 @@ Status write_png(const std::string& file, const FloatImage& image) {
 }
 
 Status write_exr(const std::string& file, const FloatImage& image) {
-  constexpr uint32_t kLargest = 1u << 30;  // Imf counts in int
-  if (!consistent(image) || image.width > kLargest || image.height > kLargest) return not_a_picture(file);
-  try {
-    const std::string bytes = encode_exr(image);
-    return write_file_atomically(file, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
-  } catch (const std::exception& failure) {
-    return Error{ErrorCode::kCannotWrite, std::string("OpenEXR: ") + failure.what(), file, "", ""};
-  }
+  return write_exr(file, image, nullptr);
+}
+
+Status write_layered_exr(const std::string& file, const LayeredImage& image) {
+  for (const auto& [name, values] : image.layers)
+    if (values.size() != image.image.pixels.size()) return not_a_picture(file);
+  return write_exr(file, image.image, &image);
 }
 
 }  // namespace goldthread

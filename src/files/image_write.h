@@ -11,5 +11,7 @@ namespace goldthread {
 Status write_png(const std::string& file, const FloatImage& image);
 /// Scene-linear values, 32-bit float channels R, G, B.
 Status write_exr(const std::string& file, const FloatImage& image);
+/// The same with a 32-bit float channel a layer, and notes as text attributes of the header.
+Status write_layered_exr(const std::string& file, const LayeredImage& image);
 
 }  // namespace goldthread

@@ -1,6 +1,7 @@
 // A picture in memory, and how a texture looks one up.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct Image {
 struct FloatImage {
   uint32_t width = 0, height = 0;
   std::vector<vec3> pixels;  ///< width * height
+};
+
+/// A picture with more to a pixel than its colour, and words that go with it.
+struct LayeredImage {
+  FloatImage image;
+  std::map<std::string, std::vector<float>> layers;  ///< by channel name, width * height values each
+  std::map<std::string, std::string> notes;          ///< by name, which starts with a letter
 };
 
 enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };

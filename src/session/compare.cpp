@@ -52,8 +52,7 @@ struct View {
 };
 
 View look(const TracedScene& scene, int wanted_width, int wanted_height) {
-  const Camera camera =
-      scene.scene().cameras.empty() ? frame_camera(scene.scene()) : scene.scene().cameras.front();
+  const Camera camera = first_camera(scene.scene());
   View view;
   view.width = static_cast<uint32_t>(std::max(1, wanted_width));
   view.height = picture_height(wanted_height, view.width, camera);

@@ -15,6 +15,7 @@
 #include "math/colour.h"
 #include "math/tone_map.h"
 #include "session/light_setup.h"
+#include "session/reference_picture.h"
 #include "session/reference_points.h"
 #include "session/watched.h"
 #include "trace/reference_image.h"
@@ -78,6 +79,9 @@ class Run {
   Status load();
   Status measure();
   Status paint();
+  bool resumes_picture() const { return file_extension(options_.resume_file) == ".exr"; }
+  Status write_shown(const std::string& file, FloatImage picture) const;
+  Status resume_picture(ReferenceImageOptions& image_options) const;
   Result<SavedEstimate> receivers() const;
   Status write_json(const SavedEstimate& estimate);
   void describe_points(const SavedEstimate& estimate);
@@ -99,13 +103,15 @@ class Run {
 
 Status Run::check_options() const {
   const int wishes = int(!options_.points_file.empty()) + int(options_.random_points > 0) +
-                     int(options_.vertices) + int(!options_.resume_file.empty()) +
+                     int(options_.vertices) + int(!options_.resume_file.empty() && !resumes_picture()) +
                      int(!options_.pictures.empty());
   if (wishes == 0)
     return usage("nothing to measure",
                  "add --points 1000, --points FILE.json, --vertices, --resume FILE.json or -o x.png");
   if (wishes > 1)
     return usage("--points, --vertices, --resume and -o each say what to measure", "give one of them");
+  if (resumes_picture() && options_.pictures.empty())
+    return usage("--resume goes on with a picture, and none is asked for", "add -o " + options_.resume_file);
   if (!options_.pictures.empty() && !options_.json_file.empty())
     return usage("--json is for points; a picture has none", "leave --json out, or use --report");
   for (const std::string& file : options_.pictures) {
@@ -279,11 +285,46 @@ void Run::describe_run(Json& figures, uint64_t rays, double seconds, double ray_
                   static_cast<double>(rays) * 1e-6, seconds, rate, 100 * ray_share);
 }
 
+Status Run::resume_picture(ReferenceImageOptions& image_options) const {
+  Result<SavedPicture> saved = read_picture_to_go_on(options_.resume_file);
+  if (!saved) return saved.error();
+  if (saved->fingerprint != picture_fingerprint(*traced_))
+    return Error{ErrorCode::kBadInput,
+                 "was made of another scene, under another light or by another camera",
+                 options_.resume_file,
+                 {},
+                 "give the scene, --sky and --sun that it was made with"};
+  if (options_.seed && *options_.seed != saved->seed)
+    return usage(fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
+                 "leave --seed out");
+  const bool other_size =
+      options_.picture_width != ReferenceOptions().picture_width || options_.picture_height != 0;
+  if (other_size &&
+      (options_.picture_width != static_cast<int>(saved->width) ||
+       (options_.picture_height != 0 && options_.picture_height != static_cast<int>(saved->height))))
+    return usage(fmt::format("--picture-size is not that of the picture that is resumed, {}x{}", saved->width,
+                             saved->height),
+                 "leave --picture-size out");
+  image_options.seed = saved->seed;
+  image_options.width = static_cast<int>(saved->width);
+  image_options.height = static_cast<int>(saved->height);
+  image_options.before = std::move(saved->pixels);
+  return Nothing{};
+}
+
+Status Run::write_shown(const std::string& file, FloatImage picture) const {
+  const ToneMap map = choose_tone_map(picture.pixels, 0.18f, static_cast<float>(options_.exposure));
+  for (vec3& pixel : picture.pixels) pixel = map(pixel);
+  return write_png(file, picture);
+}
+
 Status Run::paint() {
   ReferenceImageOptions image_options;
   image_options.width = options_.picture_width;
   image_options.height = options_.picture_height;
   image_options.seed = options_.seed.value_or(0);
+  if (resumes_picture())
+    if (const Status status = resume_picture(image_options); !status) return status.error();
   EstimateProgress progress;
   ReferenceImage traced;
   const auto begin = Clock::now();
@@ -299,15 +340,12 @@ Status Run::paint() {
       fmt::format("{} x {} pixels, {} samples each, mean standard error {:.2g}%\n", traced.image.width,
                   traced.image.height, traced.least_samples, 100 * traced.relative_error);
   describe_run(figures_, traced.rays.rays, since(begin), traced.rays.ray_share(), traced.stop_reason);
+  figures_["seed"] = image_options.seed;
   result_.report = figures_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   for (const std::string& file : options_.pictures) {
-    FloatImage picture = traced.image;
-    if (file_extension(file) == ".png") {
-      const ToneMap map = choose_tone_map(picture.pixels, 0.18f, static_cast<float>(options_.exposure));
-      for (vec3& pixel : picture.pixels) pixel = map(pixel);
-    }
-    const Status status =
-        file_extension(file) == ".png" ? write_png(file, picture) : write_exr(file, picture);
+    const Status status = file_extension(file) == ".png" ? write_shown(file, traced.image)
+                                                         : write_picture(file, traced, image_options.seed,
+                                                                         picture_fingerprint(*traced_));
     if (!status) return status.error();
     result_.written.push_back(file);
   }

@@ -54,6 +54,10 @@ FloatImage render_preview(const Scene& scene, const Lighting& lighting, const Pr
   return image;
 }
 
+Camera first_camera(const Scene& scene) {
+  return scene.cameras.empty() ? frame_camera(scene) : scene.cameras.front();
+}
+
 Camera frame_camera(const Scene& scene) {
   const Lighting dark;
   return frame_camera(ShownScene(scene, dark));

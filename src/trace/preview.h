@@ -19,5 +19,7 @@ FloatImage render_preview(const Scene& scene, const Lighting& lighting, const Pr
 /// A camera that shows the whole scene: from inside if it is a closed room, else from outside, above and in
 /// front.
 Camera frame_camera(const Scene& scene);
+/// The file's first camera, or where it has none `frame_camera`.
+Camera first_camera(const Scene& scene);
 
 }  // namespace goldthread

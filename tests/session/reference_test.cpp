@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "files/image_read.h"
+#include "files/image_write.h"
 #include "session/baked.h"
 
 namespace goldthread {
@@ -166,6 +168,32 @@ TEST(Reference, PaintsPictures) {
   EXPECT_GT(bytes_of_file(options.pictures[1]).size(), 32u * 12);
 }
 
+TEST(Reference, PicturesAreGoneOnWith) {
+  const TempFolder folder;
+  ReferenceOptions options;
+  options.input = made(folder, "cornell-box");
+  options.pictures = {folder.path("whole.exr")};
+  options.picture_width = 24;
+  options.samples = 96;
+  options.seed = 5;
+  traced(options);
+  options.pictures = {folder.path("part.exr")};
+  options.samples = 32;
+  traced(options);
+  options.picture_width = ReferenceOptions().picture_width;
+  options.seed = {};
+  options.resume_file = options.pictures[0];
+  options.samples = 96;
+  const Json report = Json::parse(traced(options).report);
+  EXPECT_EQ(report["samples"]["least"], 96);
+  EXPECT_EQ(report["seed"], 5);
+  const FloatImage whole = *read_picture(folder.path("whole.exr")), part = *read_picture(options.pictures[0]);
+  ASSERT_EQ(part.pixels.size(), whole.pixels.size());
+  for (size_t i = 0; i < part.pixels.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(part.pixels[i][k], whole.pixels[i][k], 1e-6f * whole.pixels[i][k]) << i;
+}
+
 TEST(Reference, StopsWhenAskedAndWritesWhatThereIs) {
   const TempFolder folder;
   ReferenceOptions options = points_of(made(folder, "cornell-box"), 100, 1'000'000'000);
@@ -258,6 +286,38 @@ TEST(ReferenceBadInput, WishesThatMakeNoSense) {
   EXPECT_EQ(error_of(options, folder).code, ErrorCode::kNothingToBake);
   options.input = folder.path("absent.glb");
   EXPECT_EQ(error_of(options, folder).code, ErrorCode::kBadInput);
+}
+
+TEST(ReferenceBadInput, PicturesThatCannotBeGoneOnWith) {
+  const TempFolder folder;
+  ReferenceOptions options;
+  options.input = made(folder, "cornell-box");
+  options.pictures = {folder.path("a.exr")};
+  options.picture_width = 16;
+  options.samples = 16;
+  traced(options);
+  ReferenceOptions more = options;
+  more.resume_file = folder.path("a.exr");
+  more.pictures.clear();
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kUsage);
+  more.pictures = {folder.path("b.exr")};
+  more.picture_width = 20;
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kUsage);
+  more.picture_width = 16;
+  more.seed = 9;
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kUsage);
+  more.seed = {};
+  more.sky = std::array<float, 3>{1, 1, 1};
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kBadInput);
+  more.sky = {};
+  ASSERT_TRUE(write_exr(folder.path("plain.exr"), FloatImage{1, 1, {vec3(1)}}));
+  more.resume_file = folder.path("plain.exr");
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kBadInput);
+  LayeredImage broken{FloatImage{1, 1, {vec3(1)}}, {{"samples", {7}}, {"error", {0}}}, {}};
+  broken.notes = {{"goldthread.seed", "0"}, {"goldthread.scene", "12"}};
+  ASSERT_TRUE(write_layered_exr(folder.path("broken.exr"), broken));
+  more.resume_file = folder.path("broken.exr");
+  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kBadInput);
 }
 
 }  // namespace

@@ -64,6 +64,40 @@ TEST(ReferenceImage, ShowsWhatAPreviewShows) {
       EXPECT_NEAR(picture.image.pixels[i][k], preview.pixels[i][k], 0.05f * preview.pixels[i][k]) << i;
 }
 
+// Stopped behind some pixels, and then by the number of passes: as if it had never stopped.
+TEST(ReferenceImage, GoesOnWhereItWas) {
+  const Traced t(procedural("cornell-box"));
+  const ReferenceImage whole = render(t, 12, 96);
+  ReferenceImageOptions options;
+  options.width = 12;
+  options.stop.samples = 48;
+  EstimateProgress progress;
+  ReferenceImage part = trace_reference_image(*t.tracer, options, CancelToken(), progress);
+  options.before = part.pixels;
+  for (size_t i = 0; i < options.before.size(); i += 3)  // a third is a pass ahead
+    options.before[i] = render(t, 12, 64).pixels[i];
+  options.stop.samples = 96;
+  const ReferenceImage resumed = trace_reference_image(*t.tracer, options, CancelToken(), progress);
+  EXPECT_EQ(resumed.least_samples, 96u);
+  EXPECT_EQ(resumed.most_samples, 96u);
+  EXPECT_LT(resumed.rays.rays, whole.rays.rays);
+  for (size_t i = 0; i < whole.pixels.size(); ++i) {
+    EXPECT_EQ(resumed.image.pixels[i], whole.image.pixels[i]) << i;
+    EXPECT_EQ(resumed.pixels[i].squares, whole.pixels[i].squares) << i;
+  }
+}
+
+TEST(ReferenceImage, SumsComeBackFromWhatIsTold) {
+  PixelSums pixel;
+  for (const float nits : {3.0f, 5.0f, 4.5f, 0.0f}) pixel.add(dvec3(vec3(nits, nits / 2, 1)));
+  const PixelSums again = PixelSums::of(pixel.mean(), pixel.standard_error(), pixel.passes);
+  EXPECT_EQ(again.passes, 4u);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(again.sum[k], pixel.sum[k], 1e-6);
+  EXPECT_NEAR(again.luminance, pixel.luminance, 1e-5);
+  EXPECT_NEAR(again.squares, pixel.squares, 1e-4);
+  EXPECT_EQ(PixelSums().standard_error(), 0);
+}
+
 TEST(ReferenceImage, StopsInTimeAndAtAnError) {
   const Traced t(procedural("cornell-box"));
   ReferenceImageOptions options;

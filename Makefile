@@ -50,7 +50,7 @@ test: build tools/node_modules/.package-lock.json
 	ctest --test-dir build/release --output-on-failure -j2
 
 accuracy: program
-	tools/accuracy.py
+	python3 tools/accuracy
 
 bench: build
 	@for program in build/release/bin/*_bench; do echo "== $$(basename $$program)"; $$program || exit 1; done

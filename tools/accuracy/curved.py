@@ -41,7 +41,7 @@ def _traced(program, case, scene, exact, name, quick):
     given = [e for e in case["expect"] if "point" in e]
     places = [{**e, "point": nearest_place(scene.surfaces, e["point"], e["normal"])} for e in given]
     points = [p for s in scene.surfaces if s.name in exact for p in random_points(s, count, chance)]
-    answers, seconds = program.trace(scene, name, points + places, 1024 if quick else 4096)
+    answers, seconds = program.trace(scene, name, points + places, 1024 if quick else 2048)
     out = []
     for i, surface in enumerate(s for s in scene.surfaces if s.name in exact):
         mean, spread = mean_and_spread([p["irradiance"][1] for p in answers[i * count:(i + 1) * count]])
@@ -50,7 +50,7 @@ def _traced(program, case, scene, exact, name, quick):
     return out, seconds
 
 
-def _baked(program, case, scene, exact, name, quick):
+def _baked(program, case, scene, exact, name, _):
     """The same by the hierarchical solver, which knows no standard error."""
     lit, _, seconds = program.bake(scene, name)
     out = [(lit.mean_irradiance(i)[1], exact[s.name][1], 0) for i, s in enumerate(scene.surfaces) if s.name in exact]

@@ -210,17 +210,21 @@ def interreflection(program, case, table, quick):
             return _cube_light(program, case, scene, points, method)
 
         direct, spent = light(black)
-        rows = []
+        rows, of_total = [], 0.0
         for receiver in others:
             total, seconds = light(receiver)
             spent += seconds
             exact = {**receiver["indirect_at_points"], "mean": receiver["mean_indirect_illuminance"]}
+            alone = {**case["direct_at_points"], "mean": case["receivers"][0]["mean_total_illuminance"]}
             doubt = {**receiver["indirect_at_points_error_estimate"], "mean": 0}
+            names = [*(p["name"] for p in points), "mean"]
             rows += [(t[0] - d[0], exact[name], math.hypot(t[1], doubt[name]))
-                     for name, t, d in zip([*(p["name"] for p in points), "mean"], total, direct)]
+                     for name, t, d in zip(names, total, direct)]
+            of_total = max([of_total] + [abs(t[0] / (exact[name] + alone[name]) - 1) for name, t in zip(names, total)])
         found, truth, errors = zip(*rows)
         _report(case, method, found, truth, table, errors=errors if method == "reference" else None, seconds=spent,
-                note=f"indirect, at 4 places of each face and over the room, {len(others)} reflectances")
+                note=f"indirect, at 4 places of each face and over the room, reflectances: {len(others)}; of direct "
+                     f"and indirect together {of_total:.1e}")
 
 
 def _cube_light(program, case, scene, points, method):

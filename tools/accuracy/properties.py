@@ -3,6 +3,7 @@
 import copy
 import math
 import random
+from itertools import chain
 
 import light
 import matrix
@@ -159,7 +160,8 @@ def _of_two_lamps(room, areas, whole):
 
 def _of_the_same_room(room, whole):
     """(name, pairs that should be equal, their unit) of the room in other words."""
-    changes = {"a thousand times as large": _moved(lambda v: [1000 * x for x in v]), "turned and moved": _moved(_turned),
+    changes = {"a thousand times as large": _moved(lambda v: [1000 * x for x in v]),
+               "turned and moved": _moved(_turned),
                "vertices from another on": lambda s: {**s, "vertices": s["vertices"][1:] + s["vertices"][:1]}}
     for name, change in changes.items():
         changed = room.irradiance(change)
@@ -183,7 +185,7 @@ def _invariants(room, areas):
         return out
 
     yield "energy", checks(_Checks.equal, [_balance(room.surfaces, areas, whole)])
-    for name, pairs, of in (*_of_two_lamps(room, areas, whole), *_of_the_same_room(room, whole)):
+    for name, pairs, of in chain(_of_two_lamps(room, areas, whole), _of_the_same_room(room, whole)):
         yield name, checks(_Checks.equal, pairs, of)
     brighter = room.irradiance(_painted(rho=lambda n, r: min(0.9, r + 0.1)))
     yield "no darker for more reflectance", checks(_Checks.at_most, [(whole[n], brighter[n]) for n in whole])

@@ -76,6 +76,7 @@ class Glb:
         length = struct.unpack_from("<I", data, 12)[0]
         self.json = json.loads(data[20:20 + length])
         self.binary = data[28 + length:]
+        self._read = {}
 
     def _accessor(self, index):
         a = self.json["accessors"][index]
@@ -87,7 +88,12 @@ class Glb:
         return [struct.unpack_from(f"<{size}{letter}", self.binary, start + i * stride) for i in range(a["count"])]
 
     def _triangles(self, mesh):
-        """Corners and the irradiance at each of them."""
+        """(corners, irradiance at each of them) of a mesh, read once."""
+        if mesh not in self._read:
+            self._read[mesh] = list(self._read_triangles(mesh))
+        return self._read[mesh]
+
+    def _read_triangles(self, mesh):
         for primitive in self.json["meshes"][mesh]["primitives"]:
             positions = self._accessor(primitive["attributes"]["POSITION"])
             light = self._accessor(primitive["attributes"]["_IRRADIANCE"])

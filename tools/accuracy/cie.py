@@ -233,13 +233,12 @@ def _cube_light(program, case, scene, points, method):
         lit, _, seconds = program.bake(scene, case["id"])
         out = [(lit.irradiance(p["point"], p["normal"])[1], 0) for p in points]
         return out + [(sum(lit.mean_irradiance(i)[1] for i in range(6)) / 6, 0)], seconds
+    answers, seconds = program.trace(scene, case["id"], points, 16384)
     inner = [p for s in scene.surfaces for p in gauss_points(s.positions)]
-    answers, seconds = program.trace(scene, case["id"], points + inner, 512)
-    out = [(a["irradiance"][1], a["standard_error"][1]) for a in answers]
-    weights = [p["weight"] / 6 for p in inner]
-    mean = math.fsum(w * e for w, (e, _) in zip(weights, out[len(points):]))
-    error = math.sqrt(math.fsum((w * s) ** 2 for w, (_, s) in zip(weights, out[len(points):])))
-    return out[:len(points)] + [(mean, error)], seconds
+    spread, more = program.trace(scene, case["id"], inner, 256)
+    mean = math.fsum(p["weight"] / 6 * a["irradiance"][1] for p, a in zip(inner, spread))
+    error = math.sqrt(math.fsum((p["weight"] / 6 * a["standard_error"][1]) ** 2 for p, a in zip(inner, spread)))
+    return [(a["irradiance"][1], a["standard_error"][1]) for a in answers] + [(mean, error)], seconds + more
 
 
 def _sky_and_ground(opening, receiver):

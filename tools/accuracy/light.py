@@ -100,7 +100,7 @@ def reference(program, case, published, table, quick):
     scene, means, given = scene_of(case), expected_means(case), expected_points(case)
     chance, count = random.Random(1), 256 if quick else 400
     points = [p for s in scene.surfaces if s.name in means for p in random_points(s, count, chance)]
-    answers, seconds = program.trace(scene, case["id"], points + given, 64 if quick else 4096)
+    answers, seconds = program.trace(scene, case["id"], points + given, 64 if quick else 1024)
     worst = error = 0.0
     for i, (value, own) in enumerate(means[s.name] for s in scene.surfaces if s.name in means):
         for k in range(3):

@@ -88,7 +88,7 @@ class Glb:
         return [struct.unpack_from(f"<{size}{letter}", self.binary, start + i * stride) for i in range(a["count"])]
 
     def _triangles(self, mesh):
-        """(corners, irradiance at each of them) of a mesh, read once."""
+        """(corners, irradiance at each of them, box) of a mesh, read once."""
         if mesh not in self._read:
             self._read[mesh] = list(self._read_triangles(mesh))
         return self._read[mesh]
@@ -101,12 +101,14 @@ class Glb:
             for t in range(0, len(indices), 3):
                 corners = indices[t:t + 3]
                 if len(set(corners)) == 3:
-                    yield [positions[c] for c in corners], [light[c] for c in corners]
+                    places = [positions[c] for c in corners]
+                    box = [(min(axis), max(axis)) for axis in zip(*places)]
+                    yield places, [light[c] for c in corners], box
 
     def mean_irradiance(self, mesh):
         """Over the surface, by area."""
         total, weight = [0.0, 0.0, 0.0], 0.0
-        for corners, light in self._triangles(mesh):
+        for corners, light, _ in self._triangles(mesh):
             size = area_and_normal(corners)[0]
             weight += size
             total = [t + size / 3 * sum(e[k] for e in light) for k, t in enumerate(total)]
@@ -116,7 +118,9 @@ class Glb:
         """Interpolated in the triangle that faces that way and holds the point, or in the nearest such."""
         least, found = math.inf, None
         for mesh in range(len(self.json["meshes"])) if meshes is None else meshes:
-            for corners, light in self._triangles(mesh):
+            for corners, light, box in self._triangles(mesh):
+                if sum(max(low - x, x - high, 0.0) ** 2 for x, (low, high) in zip(point, box)) >= least:
+                    continue
                 weights, distance = nearest_in_triangle(corners, point, normal)
                 if distance < least:
                     least, found = distance, [sum(w * e[k] for w, e in zip(weights, light)) for k in range(3)]

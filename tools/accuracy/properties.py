@@ -205,7 +205,7 @@ def invariants(program, case, room_case, table, quick):
     """A row a property and method."""
     areas = {s["name"]: area_and_normal(s["vertices"])[0] for s in room_case["surfaces"]}
     for method in ("matrix", "reference") if quick else ("matrix", "reference", "hierarchical"):
-        room = _Room(program, method, room_case["surfaces"], 256 if quick else 1024)
+        room = _Room(program, method, room_case["surfaces"], 256)
         for name, found in _invariants(room, areas):
             table.add(f"{case['id']}: {name}", method, found.error, seconds=room.seconds,
                       deviate=found.deviate if method == "reference" else None,

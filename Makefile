@@ -1,6 +1,6 @@
 # The front door. `make demo` and `make test` set up all they need; a second run repeats nothing.
 .DEFAULT_GOAL := help
-.PHONY: help packages build program demo test accuracy bench fuzz format lint clean
+.PHONY: help packages build program demo test accuracy accuracy-long bench fuzz format lint clean
 
 PROGRAM := build/release/bin/goldthread
 FUZZ_SECONDS ?= 60
@@ -10,6 +10,7 @@ help:
 	@echo 'make demo     build, bake a scene and leave a lit GLB and a picture in out/'
 	@echo 'make test     build and run all tests'
 	@echo 'make accuracy exact cases through every method, as a table in out/accuracy/'
+	@echo 'make accuracy-long  the path tracer alone, a hundred million paths a scene'
 	@echo 'make bench    build and run the benchmarks'
 	@echo 'make fuzz     run each fuzzer for FUZZ_SECONDS (60)'
 	@echo 'make format   lay out the sources with clang-format'
@@ -50,7 +51,11 @@ test: build tools/node_modules/.package-lock.json
 	ctest --test-dir build/release --output-on-failure -j2
 
 accuracy: program
-	tools/accuracy.py
+	python3 tools/accuracy
+
+# The path tracer alone, a hundred million paths a scene: from minutes on many cores to an hour on two.
+accuracy-long: program
+	python3 tools/accuracy --long
 
 bench: build
 	@for program in build/release/bin/*_bench; do echo "== $$(basename $$program)"; $$program || exit 1; done

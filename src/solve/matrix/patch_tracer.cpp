@@ -7,6 +7,7 @@
 #include "math/form_factor.h"
 #include "math/oriented_box.h"
 #include "math/polygon_exchange.h"
+#include "math/spherical_triangle.h"
 
 namespace goldthread {
 namespace {
@@ -52,6 +53,46 @@ std::vector<uint32_t> patches_of_triangles(const PatchModel& model) {
 bool none_above(const TracedPatch& patch, const TracedPatch& plane, float tolerance) {
   return std::none_of(patch.corners.begin(), patch.corners.end(),
                       [&](const vec3& p) { return dot(plane.normal, p - plane.centre) > tolerance; });
+}
+
+/// One ray of a pair's exchange, and its weight in the integral of F besides what all have in common.
+struct PairSample {
+  vec3 target{0};
+  float weight = 0;
+};
+
+/// To an even point of the other patch: cos cos / r², which hardly changes where r is many radii.
+PairSample even_sample(const TracedPatch& from, const vec3& x, const TracedPatch& to, UnitSquarePoint at) {
+  const vec3 y = to.sample(at.u, at.v), d = y - x;
+  const float squared = dot(d, d);
+  if (!(squared > 0)) return {y, 0};
+  return {y, std::max(0.0f, dot(from.normal, d)) * std::max(0.0f, -dot(to.normal, d)) / (squared * squared)};
+}
+
+/// In an even direction of those that the other patch fills: cos times their solid angle, which stays small
+/// where patches touch.
+PairSample direction_sample(const TracedPatch& from, const vec3& x, const TracedPatch& to,
+                            UnitSquarePoint at) {
+  const float height = dot(to.normal, x - to.centre);
+  if (!(height > 0)) return {};
+  const auto towards = [&](const vec3& corner) { return normalize(corner - x); };
+  float whole = 0;
+  for (const auto& t : to.triangles) whole += solid_angle(towards(t[0]), towards(t[1]), towards(t[2]));
+  float wanted = at.u * whole;
+  for (const auto& t : to.triangles) {
+    const vec3 a = towards(t[0]), b = towards(t[1]), c = towards(t[2]);
+    const float angle = solid_angle(a, b, c);
+    if (wanted >= angle && &t != &to.triangles.back()) {
+      wanted -= angle;
+      continue;
+    }
+    if (!(angle > 0)) return {};
+    const vec3 way = sample_spherical_triangle(a, b, c, std::clamp(wanted / angle, 0.0f, 1.0f), at.v);
+    const float down = -dot(to.normal, way);
+    if (!(down > 0)) return {};
+    return {x + height / down * way, whole * std::max(0.0f, dot(from.normal, way))};
+  }
+  return {};
 }
 
 }  // namespace
@@ -101,7 +142,10 @@ std::optional<MatrixEntry> PatchTracer::exchange(uint32_t i, uint32_t j, uint64_
         from.weights[k] * dot(from.normal, polygon_form_factor(from.points[k], from.normal, to.corners)));
   const bool near = length(from.centre - to.centre) < kNearPair * (from.radius + to.radius);
   if (open <= 0 && !near) return std::nullopt;
-  const auto [share, deviation] = seen(from, to, hash(hash(i, j), options_.seed), rays);
+  // From the smaller one the view of the other changes less.
+  const bool turn_view = near && to.area < from.area;
+  const auto [share, deviation] =
+      seen(turn_view ? to : from, turn_view ? from : to, near, hash(hash(i, j), options_.seed), rays);
   double rule_error = kFarError * open;
   if (near && share > 0) {
     const Estimate exact = polygon_exchange(model_.patches[i], model_.patches[j]);
@@ -182,23 +226,18 @@ Surroundings PatchTracer::look_around(uint32_t i) const {
 }
 
 // The share of the exchange that is seen, and its standard deviation.
-PatchTracer::SeenFraction PatchTracer::seen(const TracedPatch& from, const TracedPatch& to, uint32_t seed,
-                                            uint64_t& rays) const {
+PatchTracer::SeenFraction PatchTracer::seen(const TracedPatch& from, const TracedPatch& to, bool near,
+                                            uint32_t seed, uint64_t& rays) const {
   const size_t count = std::min<size_t>(options_.rays, kMostRays);
   std::array<Ray, kMostRays> cast;
   std::array<float, kMostRays> weight, passing;
   for (size_t k = 0; k < count; ++k) {
     const auto [a, b] = r4_point(static_cast<uint32_t>(k), seed);
-    const vec3 x = from.sample(a.u, a.v) + caster_.epsilon() * from.normal,
-               y = to.sample(b.u, b.v) + caster_.epsilon() * to.normal;
-    const vec3 d = y - x;
-    const float squared = dot(d, d);
-    // As in the integral of F: cos cos / r².
-    weight[k] = squared > 0 ? std::max(0.0f, dot(from.normal, d)) * std::max(0.0f, -dot(to.normal, d)) /
-                                  (squared * squared)
-                            : 0.0f;
-    cast[k].origin = x;
-    cast[k].direction = d;
+    const vec3 x = from.sample(a.u, a.v);
+    const PairSample sample = near ? direction_sample(from, x, to, b) : even_sample(from, x, to, b);
+    weight[k] = sample.weight;
+    cast[k].origin = x + caster_.epsilon() * from.normal;
+    cast[k].direction = sample.target + caster_.epsilon() * to.normal - cast[k].origin;
     cast[k].far = 1;
   }
   for (size_t k = 0; k < count; k += 16) {

@@ -82,7 +82,8 @@ class PatchTracer {
   };
 
   void add_view(const HemisphereScan& scan, double weight, ViewOfPatch& view) const;
-  SeenFraction seen(const TracedPatch& from, const TracedPatch& to, uint32_t seed, uint64_t& rays) const;
+  SeenFraction seen(const TracedPatch& from, const TracedPatch& to, bool near, uint32_t seed,
+                    uint64_t& rays) const;
   void find_twins();
   bool has_twin(uint32_t triangle) const;
 

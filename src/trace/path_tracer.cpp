@@ -12,10 +12,11 @@
 namespace goldthread {
 namespace {
 
-// Russian roulette starts where paths have mostly said what they have to say, and never lets all of them
-// live.
+// Russian roulette starts where paths have mostly said what they have to say. It never lets all of them live,
+// and never so few that whether a receiver meets a survivor at all is chance: in a dark room the light of
+// many bounces would then be missing from most sequences, and from their spread with it.
 constexpr int kSureBounces = 3;
-constexpr float kMostSurvival = 0.95f;
+constexpr float kLeastSurvival = 0.25f, kMostSurvival = 0.95f;
 
 constexpr size_t kBundle = PathTracer::kBundle;
 
@@ -205,7 +206,7 @@ void Bundle::bounce(bool sure, std::span<vec3> sums) {
     Path path = paths_[i];
     if (!arrive(rays_[i], meetings_[i], path, sums[path.slot])) continue;
     if (!sure) {
-      const float survival = std::min(kMostSurvival, largest(path.throughput));
+      const float survival = std::clamp(largest(path.throughput), kLeastSurvival, kMostSurvival);
       if (unit_double(choices_[i].v) >= static_cast<double>(survival)) continue;
       path.throughput /= survival;
     }

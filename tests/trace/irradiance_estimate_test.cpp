@@ -128,6 +128,30 @@ TEST(IrradianceEstimate, SameForAnyNumberOfThreads) {
   expect_same(results[0], results[2]);
 }
 
+// In a dark room what bounces three times is little, and must not be left to the few sequences that happen to
+// have a path so long: then it would be missing from most receivers and from their errors.
+TEST(IrradianceEstimate, ErrorsAreHonestInDarkRooms) {
+  Scene scene = procedural("furnace");
+  for (Material& m : scene.materials) {
+    m.emission = vec3(0);
+    m.base_colour = vec3(0.05f);
+  }
+  Box box;
+  for (const vec3& p : scene.meshes[0].primitives[0].positions)
+    box.add(vec3(scene.instances[0].transform * vec4(p, 1)));
+  scene.lights.push_back(lamp(LightKind::kPoint, 100, box.centre()));
+  const Traced t(std::move(scene));
+  const std::vector<Receiver> points = random_receivers(*t.traced, 30, 3);
+  const std::vector<IrradianceSums> few = t.sums(points, 16384, 1), many = t.sums(points, 65536, 2);
+  for (size_t p = 0; p < points.size(); ++p) {
+    const IrradianceValue a = evaluate(few[p]), b = evaluate(many[p]);
+    // A quarter of the samples cannot know the light better. Each error is itself known to 18%.
+    EXPECT_GT(a.standard_error.x, b.standard_error.x) << p;
+    // Student's t with 15 degrees of freedom: beyond 7 once in 200,000.
+    EXPECT_LT(std::abs(a.mean.x - b.mean.x), 7 * std::hypot(a.standard_error.x, b.standard_error.x)) << p;
+  }
+}
+
 TEST(IrradianceEstimate, ResumedEqualsUninterrupted) {
   const Traced t = box();
   const std::vector<Receiver> points = random_receivers(*t.traced, 20, 3);

@@ -41,13 +41,16 @@ def _traced(program, case, scene, exact, name, quick):
     given = [e for e in case["expect"] if "point" in e]
     places = [{**e, "point": nearest_place(scene.surfaces, e["point"], e["normal"])} for e in given]
     points = [p for s in scene.surfaces if s.name in exact for p in random_points(s, count, chance)]
-    answers, seconds = program.trace(scene, name, points + places, 1024 if quick else 2048)
+    samples = 1024 if quick else 2048
+    answers, seconds = program.trace(scene, name, points, samples) if points else ([], 0)
+    # A place stands for itself alone, where the others are averaged.
+    alone, more = program.trace(scene, name, places, 16 * samples) if places else ([], 0)
     out = []
     for i, surface in enumerate(s for s in scene.surfaces if s.name in exact):
         mean, spread = mean_and_spread([p["irradiance"][1] for p in answers[i * count:(i + 1) * count]])
         out.append((mean, exact[surface.name][1], spread))
-    out += [(p["irradiance"][1], e["value"][1], p["standard_error"][1]) for e, p in zip(given, answers[len(points):])]
-    return out, seconds
+    out += [(p["irradiance"][1], e["value"][1], p["standard_error"][1]) for e, p in zip(given, alone)]
+    return out, seconds + more
 
 
 def _baked(program, case, scene, exact, name, _):

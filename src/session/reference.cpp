@@ -105,13 +105,13 @@ Status Run::check_options() const {
   const int wishes = int(!options_.points_file.empty()) + int(options_.random_points > 0) +
                      int(options_.vertices) + int(!options_.resume_file.empty() && !resumes_picture()) +
                      int(!options_.pictures.empty());
+  if (resumes_picture() && options_.pictures.empty())
+    return usage("--resume goes on with a picture, and none is asked for", "add -o " + options_.resume_file);
   if (wishes == 0)
     return usage("nothing to measure",
                  "add --points 1000, --points FILE.json, --vertices, --resume FILE.json or -o x.png");
   if (wishes > 1)
     return usage("--points, --vertices, --resume and -o each say what to measure", "give one of them");
-  if (resumes_picture() && options_.pictures.empty())
-    return usage("--resume goes on with a picture, and none is asked for", "add -o " + options_.resume_file);
   if (!options_.pictures.empty() && !options_.json_file.empty())
     return usage("--json is for points; a picture has none", "leave --json out, or use --report");
   for (const std::string& file : options_.pictures) {

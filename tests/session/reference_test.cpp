@@ -299,7 +299,7 @@ TEST(ReferenceBadInput, PicturesThatCannotBeGoneOnWith) {
   ReferenceOptions more = options;
   more.resume_file = folder.path("a.exr");
   more.pictures.clear();
-  EXPECT_EQ(error_of(more, folder).code, ErrorCode::kUsage);
+  EXPECT_THAT(error_of(more, folder).line(), HasSubstr("add -o " + more.resume_file));
   more.pictures = {folder.path("b.exr")};
   more.picture_width = 20;
   EXPECT_EQ(error_of(more, folder).code, ErrorCode::kUsage);

@@ -177,6 +177,13 @@ void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kResults);
+  verb.add_option("--points", options.points_file,
+                  "also tell the light at the places of a JSON list of {point, normal}")
+      ->type_name("FILE")
+      ->group(kResults);
+  verb.add_option("--json", options.json_file, "where to: a file, - to print")
+      ->type_name("FILE")
+      ->group(kResults);
   verb.add_option("--output", texts.mode, "how the scene carries light: vertex-light or unlit (vertex-light)")
       ->type_name("MODE")
       ->check(CLI::IsMember(names_of(kOutputModes)).description(""))
@@ -265,7 +272,11 @@ Status finish_picture(const CLI::App& verb, const std::string& text, int& width,
 
 /// Moves what was parsed as text into `options`.
 Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& options) {
-  if (options.outputs.empty()) return usage_error("bake has nothing to write", "add -o lit.glb");
+  if (options.points_file.empty() != options.json_file.empty())
+    return usage_error("bake needs both or neither of --points and --json",
+                       "write --points places.json --json light.json");
+  if (options.outputs.empty() && options.points_file.empty())
+    return usage_error("bake has nothing to write", "add -o lit.glb");
   options.quality = value_of(kQualities, texts.quality);
   options.mode = value_of(kOutputModes, texts.mode);
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;

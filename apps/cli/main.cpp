@@ -78,7 +78,8 @@ int run(const BakeCommand& command) {
   ProgressLine progress(command.quiet);
   const Result<BakeResult> result = bake(command.options, listener_for(progress));
   progress.clear();
-  return result ? tell(*result, command.quiet) : fail(result.error());
+  if (!result) return fail(result.error());
+  return tell(*result, command.quiet, command.options.json_file == "-" ? result->points_json : std::string());
 }
 
 int run(const ReferenceCommand& command) {

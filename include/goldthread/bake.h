@@ -24,6 +24,10 @@ struct BakeOptions {
   std::string input;  ///< .gltf .glb .obj .ply .stl .fbx .dae
   std::vector<std::string>
       outputs;  ///< by extension: .glb .gltf (scene), .gold (solution), .png .exr (preview)
+  /// Where to tell the light besides, as the reference does: JSON, [{"point": [x, y, z], "normal": [x, y, z]},
+  /// ...], metres, on surfaces of the scene. It is gathered at each place, not interpolated between vertices.
+  std::string points_file;
+  std::string json_file;  ///< the light at the points, lux; empty for none, "-" for standard output
   OutputMode mode = OutputMode::kVertexLight;
   Quality quality = Quality::kMedium;
   std::optional<double> time_limit;    ///< seconds for the whole run
@@ -63,6 +67,7 @@ struct BakeListener {
 struct BakeResult {
   std::string json;
   std::string summary;
+  std::string points_json;  ///< what `json_file` holds; empty without `points_file`
   std::vector<std::string> warnings;
   std::vector<std::string> written;  ///< files
   bool cancelled = false;

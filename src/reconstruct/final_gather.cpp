@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/rng.h"
+#include "math/colour.h"
 #include "solve/hierarchical/point_transfer.h"
 
 namespace goldthread {
@@ -13,7 +15,8 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
   if (source == ElementKind::kPoint || source == ElementKind::kSun) return 1;
   const bool mixed = link.visibility > 0 && link.visibility < 255;
   const float wanted = share * static_cast<float>(options.light_rays) * (mixed ? 2.0f : 0.5f);
-  return static_cast<uint32_t>(std::clamp(std::ceil(wanted), mixed ? 2.0f : 1.0f, 64.0f));
+  return static_cast<uint32_t>(
+      std::clamp(std::ceil(wanted), mixed ? 2.0f : 1.0f, 2.0f * static_cast<float>(options.light_rays)));
 }
 
 // What a source could bring at most to a point, by its size and distance alone: a link may be weak on the
@@ -24,51 +27,159 @@ float most_at(const Element& source, const vec3& x) {
   return apart > 0 ? std::min(1.0f, source.area / (kPi * apart * apart)) : 1.0f;
 }
 
+bool has_solid_angle(ElementKind kind) {
+  return kind != ElementKind::kPoint && kind != ElementKind::kSun;
+}
+
+// Rays to a source that is not even, at the least.
+constexpr uint32_t kFewPlaces = 4;
+
+// A source within this many of its radii is near.
+constexpr float kNear = 2;
+// What a near source's unevenness may amount to, as a share of the receiver's light.
+constexpr float kUneven = 0.02f;
+
+// Adds up what comes to one point.
+class PointGather {
+ public:
+  PointGather(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
+              const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays)
+      : solver_(solver),
+        pool_(solver.pool()),
+        light_(light),
+        x_(x),
+        n_(n),
+        options_(options),
+        seed_(seed),
+        rays_(rays),
+        // What the leaf has in all, against which single links are weighed; its own value may be nought in a
+        // shadow.
+        whole_(largest(solver.state().irradiance[leaf]) + 1e-20f) {}
+
+  void add(const Link& link, ElementId receiver) {
+    const vec3 b = seen_radiosity(link, solver_.links().views(), light_.shown);
+    const float most = largest(b);
+    if (most <= 0) return;
+    const float little = 0.1f * options_.ray_share * whole_, weak = (link.mean + link.spread) * most;
+    // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
+    if (weak < little && (link.visibility == 0 || most_at(pool_[link.source], x_) * most < 10 * little))
+      return add_modelled(link, pool_[receiver], b);
+    add_source(link, link.source, b);
+  }
+
+  Gathered result() const {
+    return {sum_, faced_ > 0 ? seen_ / faced_ : 1.0f, seen_, variance_, nearest_leaf_};
+  }
+
+ private:
+  void add_modelled(const Link& link, const Element& r, const vec3& b) {
+    const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
+                                  : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
+    sum_ += std::max(0.0f, modelled) * b;
+    if (!has_solid_angle(pool_[link.source].kind)) return;
+    faced_ += link.unoccluded;
+    seen_ += link.mean;
+  }
+
+  void add_source(const Link& link, ElementId source, const vec3& b) {
+    const Element& s = pool_[source];
+    const vec3 m = point_transfer(pool_, source, x_, n_);
+    const float factor = dot(m, n_);
+    if (factor <= 0) return;
+    const float brings = factor * largest(b);
+    if (is_near(s) && brings > kUneven * whole_) {
+      if (s.first_child == kNoElement) {
+        if (brings > nearest_brings_) nearest_leaf_ = source;
+        nearest_brings_ = std::max(nearest_brings_, brings);
+      } else if ((light_.high[source] - light_.low[source]) * factor > kUneven * whole_) {
+        for (uint32_t c = 0; c < 2; ++c) add_source(link, s.first_child + c, light_.shown[s.first_child + c]);
+        return;
+      }
+    }
+    const uint32_t count = rays_for(brings / (whole_ + brings), link, s.kind, options_);
+    const bool uneven = is_surface(s.kind) && s.kind != ElementKind::kVolume && s.first_child != kNoElement &&
+                        (light_.high[source] - light_.low[source]) * factor > kUneven * whole_;
+    if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
+    float visible = static_cast<float>(link.visibility) / 255.0f;
+    if (count > 0)
+      visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible);
+    add_doubt(factor * luminance(b), visible, count);
+    if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
+    sum_ += visible * factor * b;
+    if (!has_solid_angle(s.kind)) return;
+    faced_ += factor;
+    seen_ += visible * factor;
+  }
+
+  // By what the rays meet: of a floor, what is seen from the ceiling is not what lies in the shade of the
+  // desks.
+  void add_seen_places(const Link& link, ElementId source, float factor, uint32_t count) {
+    SeenShare share;
+    vec3 sum(0);
+    float squares = 0;
+    for (uint32_t first = 0; first < count; first += SeenPoints::kMost) {
+      SeenPoints places;
+      const uint32_t batch = std::min(SeenPoints::kMost, count - first);
+      const SeenShare part = solver_.visibility().look(
+          pool_, source, x_, n_, batch, first == 0 ? seed_ : hash(seed_, first), rays_, &places);
+      const float weight = static_cast<float>(batch) / static_cast<float>(count);
+      share.seen += weight * part.seen;
+      share.hidden += weight * part.hidden;
+      for (uint32_t k = 0; k < places.count; ++k) {
+        const vec3& b = light_.shown[pool_.deepest(source, places.points[k])];
+        sum += weight * places.weights[k] * b;
+        squares += weight * weight * places.weights[k] * places.weights[k] * luminance(b) * luminance(b);
+      }
+    }
+    const float all = share.seen + share.hidden;
+    if (!(all > 0)) {  // a silhouette: as the link has it
+      sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source];
+      return;
+    }
+    const float scale = std::min(factor, 1.0f) / all;
+    sum_ += scale * sum;
+    const float brings = luminance(sum) * scale;
+    variance_ += std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
+    faced_ += factor;
+    seen_ += share.seen / all * factor;
+  }
+
+  bool is_near(const Element& s) const {
+    if (!is_surface(s.kind) || s.kind == ElementKind::kVolume) return false;
+    const vec3 apart = s.centre - x_;
+    return dot(apart, apart) < kNear * kNear * s.radius * s.radius;
+  }
+
+  // Of `count` rays, that next to the seen share might have been seen, or not (Laplace); without rays, what
+  // is seen in part is known to about four.
+  void add_doubt(float brings, float visible, uint32_t count) {
+    if (count <= 1 && (visible <= 0 || visible >= 1)) return;  // lamps without size, and weak sources
+    const float n = static_cast<float>(std::max(count, 4u));
+    const float likely = (visible * n + 0.5f) / (n + 1);
+    variance_ += brings * brings * likely * (1 - likely) / n;
+  }
+
+  const HierarchicalSolver& solver_;
+  const ElementPool& pool_;
+  const ShownLight& light_;
+  const vec3 x_, n_;
+  const GatherOptions& options_;
+  const uint32_t seed_;
+  RayCount& rays_;
+  const float whole_;
+  vec3 sum_{0};
+  float faced_ = 0, seen_ = 0, variance_ = 0, nearest_brings_ = 0;
+  ElementId nearest_leaf_ = kNoElement;
+};
+
 }  // namespace
 
-Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown, ElementId leaf,
-                   const vec3& x, const vec3& n, const GatherOptions& options, uint32_t seed,
-                   RayCount& rays) {
-  const ElementPool& pool = solver.pool();
-  const RadiosityState& state = solver.state();
-  // What the leaf has in all, against which single links are weighed; its own value may be nought in a
-  // shadow.
-  const float whole = largest(state.irradiance[leaf]) + 1e-20f;
-  vec3 sum(0);
-  float faced = 0, seen = 0;
-  for (ElementId id = leaf; id != kNoElement; id = pool[id].parent) {
-    for (const Link& link : solver.links().into(id)) {
-      const vec3 b = seen_radiosity(link, solver.links().views(), shown);
-      const float most = largest(b);
-      if (most <= 0) continue;
-      const ElementKind kind = pool[link.source].kind;
-      const bool fills_sky = kind != ElementKind::kPoint && kind != ElementKind::kSun;  // has a solid angle
-      const float little = 0.1f * options.ray_share * whole, weak = (link.mean + link.spread) * most;
-      // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
-      if (weak < little && (link.visibility == 0 || most_at(pool[link.source], x) * most < 10 * little)) {
-        const Element& r = pool[id];
-        const float modelled = r.flat ? link.ambient + dot(x - r.centre, link.transfer)
-                                      : std::max(0.0f, dot(n, link.transfer)) + link.ambient;
-        sum += std::max(0.0f, modelled) * b;
-        faced += fills_sky ? link.unoccluded : 0;
-        seen += fills_sky ? link.mean : 0;
-        continue;
-      }
-      const vec3 m = point_transfer(pool, link.source, x, n);
-      const float factor = dot(m, n);
-      if (factor <= 0) continue;
-      const uint32_t count = rays_for(factor * most / (whole + factor * most), link, kind, options);
-      float visible = static_cast<float>(link.visibility) / 255.0f;
-      if (count > 0)
-        visible = solver.visibility().fraction(pool, link.source, x, n, count, seed, rays, visible);
-      if (is_surface(kind)) visible = std::min(visible, 1 / factor);
-      sum += visible * factor * b;
-      if (!fills_sky) continue;
-      faced += factor;
-      seen += visible * factor;
-    }
-  }
-  return {sum, faced > 0 ? seen / faced : 1.0f, seen};
+Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
+                   const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays) {
+  PointGather gather(solver, light, leaf, x, n, options, seed, rays);
+  for (ElementId id = leaf; id != kNoElement; id = solver.pool()[id].parent)
+    for (const Link& link : solver.links().into(id)) gather.add(link, id);
+  return gather.result();
 }
 
 }  // namespace goldthread

@@ -9,18 +9,30 @@ struct GatherOptions {
   float ray_share = 0.01f;
 };
 
+/// The elements' radiosity as gathering reads it, by element: the solver's, or a better one.
+struct ShownLight {
+  std::vector<vec3> shown;       ///< lm/m^2, as RadiosityState::shown
+  std::vector<float> low, high;  ///< lm/m^2: the range below, as RadiosityState's
+
+  explicit ShownLight(const RadiosityState& state) : shown(state.shown), low(state.low), high(state.high) {}
+};
+
 struct Gathered {
   vec3 irradiance{0};  ///< lux
   float openness = 1;  ///< of what lies before the point, the share that it sees
   float seen = 1;      ///< sum of the visible form factors
+  float variance = 0;  ///< of the luminance of `irradiance`, lux^2, as far as the rays' luck goes
+  /// The brightest leaf that lies next to the point, of which only the mean is known; kNoElement if none
+  /// does.
+  ElementId nearest_leaf = kNoElement;
 };
 
 /// Irradiance at `x` with unit normal `n`, which belongs to leaf element `leaf`: the links into it and all
 /// elements above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew), but
 /// for those that bring next to nothing, which serve as they are. Rays are cast for links that bring a share
-/// of the light worth them; for the rest the links' own sampled visibility serves.
-/// `shown` is the elements' radiosity: RadiosityState::shown or a better one.
-Gathered gather_at(const HierarchicalSolver& solver, std::span<const vec3> shown, ElementId leaf,
-                   const vec3& x, const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
+/// of the light worth them; for the rest the links' own sampled visibility serves. A source next to x whose
+/// radiosity varies is descended: what x has before it may be in the shadow of x's own surface.
+Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
+                   const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
 
 }  // namespace goldthread

@@ -119,7 +119,7 @@ PartPoints collect_light_points(const ElementPool& pool, uint32_t part, float no
       while (point != kNoPoint && dot(out.points[point].normal, n) < normal_agreement) point = next_at[point];
       if (point == kNoPoint) {
         point = static_cast<uint32_t>(out.points.size());
-        out.points.push_back({view.position(v), n, f});
+        out.points.push_back({view.position(v), n, f, v});
         next_at.push_back(first_at[v]);
         smallest.push_back(area);
         first_at[v] = point;

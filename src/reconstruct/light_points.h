@@ -13,8 +13,9 @@ namespace goldthread {
 /// where their normals agree, several where they crease.
 struct LightPoint {
   vec3 position{0};
-  vec3 normal{0};     ///< unit, on the front: the source's vertex normals, or the faces' own
-  uint32_t face = 0;  ///< the smallest leaf face it belongs to
+  vec3 normal{0};       ///< unit, on the front: the source's vertex normals, or the faces' own
+  uint32_t face = 0;    ///< the smallest leaf face it belongs to
+  uint32_t vertex = 0;  ///< of the leaf mesh; of the part's own where that is uncut
 };
 
 /// The final mesh of a part: triangulated leaf faces over light points.

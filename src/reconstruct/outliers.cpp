@@ -35,10 +35,11 @@ bool is_outlier(const ElementPool& pool, ElementId id) {
 
 }  // namespace
 
-std::vector<vec3> settle_outliers(const HierarchicalSolver& solver, const ReconstructOptions& options,
-                                  const CancelToken& cancel, ReconstructStats& stats) {
+ShownLight settle_outliers(const HierarchicalSolver& solver, const ReconstructOptions& options,
+                           const CancelToken& cancel, ReconstructStats& stats) {
   const ElementPool& pool = solver.pool();
-  std::vector<vec3> shown = solver.state().shown;
+  const ShownLight solved(solver.state());
+  ShownLight light = solved;
   std::vector<uint8_t> found(pool.size());
   parallel_for(
       found.size(),
@@ -68,17 +69,17 @@ std::vector<vec3> settle_outliers(const HierarchicalSolver& solver, const Recons
         vec3 sum(0);
         // All by what the solver knows: an outlier next to another sees it as it was.
         for (uint32_t k = 0; k < kPoints; ++k)
-          sum += gather_at(solver, solver.state().shown, id, at[k].position, at[k].normal, gather,
-                           hash(id, 78 + k), count)
+          sum += gather_at(solver, solved, id, at[k].position, at[k].normal, gather, hash(id, 78 + k), count)
                      .irradiance;
-        shown[id] = pool[id].exitance + pool[id].reflectance * sum / static_cast<float>(kPoints);
+        light.shown[id] = pool[id].exitance + pool[id].reflectance * sum / static_cast<float>(kPoints);
+        light.low[id] = light.high[id] = largest(light.shown[id]);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
       },
       32);
   stats.rays += {rays.load(), nanoseconds.load()};
   stats.outliers = outliers.size();
-  return shown;
+  return light;
 }
 
 }  // namespace goldthread

@@ -6,29 +6,28 @@
 
 namespace goldthread {
 
-enum class Reconstruction {
-  kAverage,  ///< leaf elements' irradiance vectors, turned to the vertex normal and averaged: fast, for
-             ///< snapshots
-  kGather,   ///< every link on the way to the root is evaluated again at the vertex (thesis 4.5.5, final
-             ///< gather)
-};
-
 struct ReconstructOptions {
-  Reconstruction method = Reconstruction::kGather;
-  uint32_t light_rays =
-      128;  ///< kGather: shadow rays for a link that brings all of a vertex's light; less pro rata
+  uint32_t light_rays = 128;  ///< shadow rays for a link that brings all of a vertex's light; less pro rata
   float ray_share =
       0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
+  double error = 0.06;       ///< root mean square by area of what lies between vertices, over mean light
+  double least_area = 5e-7;  ///< nothing is cut below this share of the scene's area
 };
 
 struct ReconstructStats {
   RayCount rays;
   uint64_t points = 0;
   uint64_t outliers = 0;  ///< leaves whose own light was gathered first
+  double error = 0;       ///< what `ReconstructOptions::error` bounds, as it is in the end
 };
 
-/// Light on every primitive that receives it. When cancelled, what is not yet gathered is averaged.
-Lighting reconstruct(const HierarchicalSolver& solver, const ReconstructOptions& options,
-                     const CancelToken& cancel, ReconstructStats& stats);
+/// Light on every primitive that receives it. Every link on the way to the root is evaluated again at the
+/// vertices (thesis 4.5.5, final gather), and leaves are cut where light bends between them: the solver gains
+/// elements. When cancelled, what is not yet gathered is averaged.
+Lighting reconstruct(HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
+                     ReconstructStats& stats);
+
+/// The same from the leaf elements' irradiance vectors alone: fast, for snapshots.
+Lighting average_lighting(const HierarchicalSolver& solver);
 
 }  // namespace goldthread

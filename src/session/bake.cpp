@@ -17,8 +17,9 @@
 #include "files/scene_write.h"
 #include "files/solution_file.h"
 #include "math/tone_map.h"
-#include "reconstruct/reconstruct.h"
+#include "reconstruct/place_gather.h"
 #include "session/light_setup.h"
+#include "session/reference_points.h"
 #include "session/report.h"
 #include "session/solve_session.h"
 #include "session/watched.h"
@@ -45,22 +46,27 @@ Effort effort_for(Quality quality) {
       effort.solve.least_area = 2e-4;
       effort.reconstruct.light_rays = 32;
       effort.reconstruct.ray_share = 0.03f;
+      effort.reconstruct.error = 0.15;
+      effort.reconstruct.least_area = 2e-6;
       break;
     case Quality::kMedium:
       effort.solve.last_error = 1e-5;
       effort.solve.least_area = 1.2e-5;
+      effort.reconstruct.light_rays = 64;
       break;
     case Quality::kHigh:
       effort.solve.last_error = 3e-6;
       effort.solve.least_area = 6e-6;
-      effort.reconstruct.light_rays = 256;
+      effort.reconstruct.light_rays = 128;
       effort.reconstruct.ray_share = 0.005f;
+      effort.reconstruct.error = 0.03;
       break;
     case Quality::kFinal:
       effort.solve.last_error = 1e-6;
       effort.solve.least_area = 1.5e-6;
-      effort.reconstruct.light_rays = 512;
+      effort.reconstruct.light_rays = 256;
       effort.reconstruct.ray_share = 0.002f;
+      effort.reconstruct.error = 0.015;
       break;
   }
   return effort;
@@ -89,11 +95,13 @@ class Bake {
  private:
   Status check_options() const;
   Status load();
+  Status read_places();
   Status preprocess();
   Status build_hierarchies(const CancelToken& stop);
   Status solve();
   void reconstruct_light();
   Status write();
+  Status write_places();
   Status write_one(const std::string& file);
   void finish_report();
   std::string summary() const;
@@ -131,10 +139,14 @@ class Bake {
   std::unique_ptr<RayCaster> caster_;
   std::unique_ptr<HierarchicalSolver> solver_;
   Lighting lighting_;
+  std::vector<Receiver> receivers_;   // of options_.points_file
+  std::vector<SurfacePlace> places_;  // the same
+  std::vector<std::optional<vec3>> light_;
 };
 
 Status Bake::check_options() const {
-  if (options_.outputs.empty()) return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
+  if (options_.outputs.empty() && options_.points_file.empty())
+    return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
   for (const std::string& file : options_.outputs) {
     const std::string extension = file_extension(file);
     if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" &&
@@ -147,8 +159,15 @@ Status Bake::check_options() const {
     // Known before hours are spent on what cannot be kept.
     if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
   }
-  if (!options_.report_file.empty())
-    if (const auto probe = AtomicFile::create(options_.report_file); !probe) return probe.error();
+  if (options_.points_file.empty() != options_.json_file.empty())
+    return Error{ErrorCode::kUsage,
+                 "needs both points and a file for their light, or neither",
+                 {},
+                 {},
+                 "add --points places.json --json light.json"};
+  for (const std::string& file : {options_.report_file, options_.json_file})
+    if (!file.empty() && file != "-")
+      if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
   return Nothing{};
 }
 
@@ -165,6 +184,20 @@ Status Bake::load() {
   if (scene_.triangle_count() == 0)
     return Error{
         ErrorCode::kNothingToBake, "has no triangles", options_.input, {}, "give a file with a mesh in it"};
+  return read_places();
+}
+
+Status Bake::read_places() {
+  if (options_.points_file.empty()) return Nothing{};
+  const TracedScene traced(scene_);
+  Result<std::vector<Receiver>> receivers = read_points(options_.points_file, traced);
+  if (!receivers) return receivers.error();
+  receivers_ = *std::move(receivers);
+  for (const Receiver& r : receivers_) {
+    const TracedTriangle& triangle = traced.triangles()[r.triangle];
+    const TracedPart& part = traced.parts()[triangle.part];
+    places_.push_back({part.instance, part.primitive, triangle.source, r.back, r.origin, r.normal});
+  }
   return Nothing{};
 }
 
@@ -272,10 +305,11 @@ void Bake::reconstruct_light() {
   tell("reconstruct", 0.7);
   const auto begin = Clock::now();
   ReconstructOptions options = effort_for(options_.quality).reconstruct;
-  if (cancelled_) options.method = Reconstruction::kAverage;
   ReconstructStats stats;
-  run_watched("reconstruct", 0.8, 0.1,
-              [&](const CancelToken& stop) { lighting_ = reconstruct(*solver_, options, stop, stats); });
+  run_watched("reconstruct", 0.8, 0.1, [&](const CancelToken& stop) {
+    lighting_ = cancelled_ ? average_lighting(*solver_) : reconstruct(*solver_, options, stop, stats);
+    if (!places_.empty()) light_ = gather_places(*solver_, places_, options, stop, stats);
+  });
   lighting_.revision = 1;
   report_.solver.reconstruct_rays = stats.rays.rays;
   report_.seconds.reconstruct = since(begin);
@@ -304,6 +338,7 @@ Status Bake::write() {
   tell("write", 0.95);
   const auto begin = Clock::now();
   finish_report();
+  if (const Status status = write_places(); !status) return status.error();
   for (const std::string& file : options_.outputs) {
     if (const Status status = write_one(file); !status) return status.error();
     result_.written.push_back(file);
@@ -319,6 +354,15 @@ Status Bake::write() {
       return status.error();
   tell("write", 1);
   return Nothing{};
+}
+
+Status Bake::write_places() {
+  if (places_.empty()) return Nothing{};
+  result_.points_json = write_light(nlohmann::ordered_json::object(), receivers_, light_);
+  if (options_.json_file == "-") return Nothing{};
+  const Status status = write_file_atomically(options_.json_file, as_bytes(result_.points_json));
+  if (status) result_.written.push_back(options_.json_file);
+  return status;
 }
 
 Status Bake::write_one(const std::string& file) {

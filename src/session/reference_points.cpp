@@ -156,20 +156,47 @@ Result<std::vector<Receiver>> read_points(const std::string& file, const TracedS
   return receivers;
 }
 
+namespace {
+
+/// `figures` with `records`, each a line, as its "points".
+std::string with_points(const Json& figures, const std::vector<std::string>& records) {
+  std::string text = figures.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.find_last_not_of("}\n ") + 1);
+  text += figures.empty() ? "\n  \"points\": [" : ",\n  \"points\": [";
+  for (size_t i = 0; i < records.size(); ++i) text += (i > 0 ? ",\n    " : "\n    ") + records[i];
+  return text + "\n  ]\n}\n";
+}
+
+}  // namespace
+
+std::string write_light(Json figures, const std::vector<Receiver>& receivers,
+                        const std::vector<std::optional<vec3>>& light) {
+  std::vector<std::string> records(receivers.size());
+  for (size_t i = 0; i < records.size(); ++i) {
+    std::string& text = records[i] = "{";
+    append(text, "point", dvec3(receivers[i].point));
+    append(text, "normal", dvec3(receivers[i].normal));
+    if (light[i]) {
+      text += "\"irradiance\":";
+      append(text, std::array<double, 3>{double{light[i]->x}, double{light[i]->y}, double{light[i]->z}});
+    } else {
+      text += "\"irradiance\":null";
+    }
+    text += "}";
+  }
+  return with_points(figures, records);
+}
+
 std::string write_estimate(Json figures, const SavedEstimate& estimate) {
   figures["seed"] = estimate.seed;
   figures["rays"] = estimate.rays;
   figures["seconds"] = estimate.seconds;
   figures["ray_time_share"] = estimate.ray_time_share;
   figures["fingerprint"] = estimate.fingerprint;
-  std::string text = figures.dump(2, ' ', false, Json::error_handler_t::replace);
-  text.resize(text.find_last_not_of("}\n ") + 1);
-  text += ",\n  \"points\": [";
   std::vector<std::string> records(estimate.receivers.size());
   parallel_for(
       records.size(), [&](size_t i) { records[i] = record_of(estimate.receivers[i], estimate.sums[i]); }, 64);
-  for (size_t i = 0; i < records.size(); ++i) text += (i > 0 ? ",\n    " : "\n    ") + records[i];
-  return text + "\n  ]\n}\n";
+  return with_points(figures, records);
 }
 
 Result<SavedEstimate> read_estimate(const std::string& file) {

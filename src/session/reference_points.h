@@ -1,6 +1,7 @@
 // Lists of points in and out: what is to be measured, what was, and all that is needed to go on.
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ namespace goldthread {
 /// Reads [{"point": [x, y, z], "normal": [x, y, z]}, ...], in metres; normals need not be unit. Every point
 /// must lie on a surface of the scene. Errors name the file and the record, as "point 3", counted from 0.
 Result<std::vector<Receiver>> read_points(const std::string& file, const TracedScene& scene);
+
+/// Light at the same places by other means: [{"point", "normal", "irradiance"}, ...] under "points" in
+/// `figures`, a point a line; irradiance in lux, null where `light` has none.
+std::string write_light(nlohmann::ordered_json figures, const std::vector<Receiver>& receivers,
+                        const std::vector<std::optional<vec3>>& light);
 
 /// An estimate that was written.
 struct SavedEstimate {

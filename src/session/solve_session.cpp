@@ -77,10 +77,7 @@ void SolveSession::breathe(bool picture_due) {
 }
 
 void SolveSession::publish() {
-  ReconstructOptions options;
-  options.method = Reconstruction::kAverage;
-  ReconstructStats stats;
-  auto lighting = std::make_shared<Lighting>(reconstruct(solver_, options, cancel_, stats));
+  auto lighting = std::make_shared<Lighting>(average_lighting(solver_));
   lighting->revision = ++revision_;
   const std::lock_guard lock(mutex_);
   snapshot_ = std::move(lighting);

@@ -51,7 +51,7 @@ double relative_error(const IrradianceSums& sums) {
 /// Samples that are traced together, each added to the sum that it is for.
 class Samples {
  public:
-  Samples(const PathTracer& tracer, RayCount& count) : tracer_(tracer), count_(count) {}
+  Samples(const PathTracer& tracer, PathCost& count) : tracer_(tracer), count_(count) {}
 
   bool full() const { return size_ == PathTracer::kBundle; }
   void add(const Receiver& receiver, PathSeed seed, dvec3& sum) {
@@ -66,7 +66,7 @@ class Samples {
 
  private:
   const PathTracer& tracer_;
-  RayCount& count_;
+  PathCost& count_;
   size_t size_ = 0;
   std::array<PathStart, PathTracer::kBundle> starts_;
   std::array<dvec3*, PathTracer::kBundle> sums_{};
@@ -177,7 +177,7 @@ bool IrradianceEstimate::trace_slice(const Round& round, size_t first, size_t la
   const uint64_t most = *std::max_element(wanted.begin(), wanted.end());
   const size_t together = std::max<size_t>(1, PathTracer::kBundle / std::max<uint64_t>(1, most));
   const size_t groups = (count + together - 1) / together;
-  std::vector<RayCount> rays(groups);
+  std::vector<PathCost> rays(groups);
   std::atomic<bool> stopped{false};
   parallel_for(groups, [&](size_t group) {
     Samples samples(tracer_, rays[group]);
@@ -200,7 +200,7 @@ bool IrradianceEstimate::trace_slice(const Round& round, size_t first, size_t la
     }
     go_on();
   });
-  for (const RayCount& more : rays) rays_ += more;
+  for (const PathCost& more : rays) rays_ += more;
   if (stopped) return false;
   for (size_t item = 0; item < count; ++item)
     sums_[first + item / kBatches].batches[item % kBatches] = sums[item];

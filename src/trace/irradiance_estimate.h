@@ -66,7 +66,7 @@ class IrradianceEstimate {
 
   const std::vector<Receiver>& receivers() const { return receivers_; }
   const std::vector<IrradianceSums>& sums() const { return sums_; }
-  const RayCount& rays() const { return rays_; }
+  const PathCost& rays() const { return rays_; }
   const EstimateProgress& progress() const { return progress_; }
 
  private:
@@ -79,7 +79,7 @@ class IrradianceEstimate {
   std::vector<Receiver> receivers_;
   std::vector<IrradianceSums> sums_;
   uint32_t seed_;
-  RayCount rays_;
+  PathCost rays_;
   double paths_per_second_ = 50000;  ///< a guess at first
   EstimateProgress progress_;
 };

@@ -68,7 +68,7 @@ struct Promise {
 /// Some paths on the same bounce.
 class Bundle {
  public:
-  Bundle(const TracedScene& scene, const LightSampler& lights, RayCount& count)
+  Bundle(const TracedScene& scene, const LightSampler& lights, PathCost& count)
       : scene_(scene), lights_(lights), count_(count), lamp_sums_(lights.lamp_count()) {}
 
   /// Adds what each start receives to `sums`. At most kBundle starts.
@@ -93,7 +93,7 @@ class Bundle {
 
   const TracedScene& scene_;
   const LightSampler& lights_;
-  RayCount& count_;
+  PathCost& count_;
   Few<Path, kBundle> paths_;
   Few<PathSeed, kBundle> seeds_;  ///< of paths_
   Few<SobolPoint, kBundle> choices_, points_;
@@ -267,12 +267,12 @@ bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) c
 
 }  // namespace
 
-double RayCount::ray_share() const {
+double PathCost::ray_share() const {
   if (path_nanoseconds <= 0) return 0;
   return std::clamp(static_cast<double>(ray_nanoseconds) / static_cast<double>(path_nanoseconds), 0.0, 1.0);
 }
 
-void PathTracer::irradiance(std::span<const PathStart> starts, std::span<vec3> lux, RayCount& count) const {
+void PathTracer::irradiance(std::span<const PathStart> starts, std::span<vec3> lux, PathCost& count) const {
   GOLDTHREAD_CHECK_EQ(starts.size(), lux.size());
   const auto begin = Clock::now();
   std::fill(lux.begin(), lux.end(), vec3(0));
@@ -284,7 +284,7 @@ void PathTracer::irradiance(std::span<const PathStart> starts, std::span<vec3> l
   count.path_nanoseconds += nanoseconds_since(begin);
 }
 
-void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits, RayCount& count) const {
+void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits, PathCost& count) const {
   GOLDTHREAD_CHECK_EQ(seen.size(), nits.size());
   const auto begin = Clock::now();
   Bundle bundle(scene_, lights_, count);

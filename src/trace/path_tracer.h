@@ -13,12 +13,12 @@
 namespace goldthread {
 
 /// The rays of some paths, and the share of time that went into them.
-struct RayCount {
+struct PathCost {
   uint64_t rays = 0;
   int64_t ray_nanoseconds = 0;   ///< in the ray caster
   int64_t path_nanoseconds = 0;  ///< all of it
 
-  RayCount& operator+=(const RayCount& more) {
+  PathCost& operator+=(const PathCost& more) {
     rays += more.rays;
     ray_nanoseconds += more.ray_nanoseconds;
     path_nanoseconds += more.path_nanoseconds;
@@ -53,12 +53,12 @@ class PathTracer {
 
   /// One sample of the irradiance on each path's plane, lux; its expectation is the integral of incident
   /// radiance times cosine over the hemisphere. `lux` is as long as `starts`.
-  void irradiance(std::span<const PathStart> starts, std::span<vec3> lux, RayCount& count) const;
+  void irradiance(std::span<const PathStart> starts, std::span<vec3> lux, PathCost& count) const;
 
   /// One sample of the radiance that a camera sees along each ray, nits. As in any viewer, backs of one-sided
   /// surfaces are looked through by the camera (and by nothing else), and unlit surfaces show their colour.
   /// `nits` is as long as `seen`.
-  void radiance(std::span<const CameraPath> seen, std::span<vec3> nits, RayCount& count) const;
+  void radiance(std::span<const CameraPath> seen, std::span<vec3> nits, PathCost& count) const;
 
   const TracedScene& scene() const { return scene_; }
   const LightSampler& lights() const { return lights_; }

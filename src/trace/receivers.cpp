@@ -212,6 +212,8 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
     });
   }
   if (on == Receiver::kNowhere) return placed;
+  placed.receiver.triangle = on;
+  placed.receiver.back = dot(up, scene.triangles()[on].normal) < 0;
   // In the middle of a surface it stays where it is, even between two triangles.
   placed.receiver.origin = meets_another_plane(scene, on, foot, 4 * scene.epsilon())
                                ? off_the_edge(scene, on, foot, up)

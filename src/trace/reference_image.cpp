@@ -40,7 +40,7 @@ class Painting {
   template <typename Stop>
   bool add_pass(uint32_t pass, const Stop& stop, EstimateProgress& progress) {
     std::atomic<bool> stopped{false};
-    std::vector<RayCount> rows(height_);
+    std::vector<PathCost> rows(height_);
     parallel_for(height_, [&](size_t y) {
       for (uint32_t x = 0; x < width_; x += kPixelsTogether) {
         if (stopped || stop()) {
@@ -51,7 +51,7 @@ class Painting {
       }
       progress.rays.fetch_add(rows[y].rays, std::memory_order_relaxed);
     });
-    for (const RayCount& row : rows) rays_ += row;
+    for (const PathCost& row : rows) rays_ += row;
     return !stopped;
   }
 
@@ -63,7 +63,7 @@ class Painting {
 
   /// One more pass' samples of the pixels from `begin` to before `end` of row `y`, but for those that are
   /// ahead of `pass`: an earlier run was stopped behind them.
-  void add_samples(uint32_t begin, uint32_t end, uint32_t y, uint32_t pass, RayCount& count) {
+  void add_samples(uint32_t begin, uint32_t end, uint32_t y, uint32_t pass, PathCost& count) {
     std::array<CameraPath, PathTracer::kBundle> paths;
     std::array<vec3, PathTracer::kBundle> nits;
     const vec2 size(static_cast<float>(width_), static_cast<float>(height_));
@@ -93,7 +93,7 @@ class Painting {
   const Lens& lens_;
   uint32_t width_, height_, seed_;
   std::vector<PixelSums> pixels_;
-  RayCount rays_;
+  PathCost rays_;
 };
 
 double Painting::relative_error() const {

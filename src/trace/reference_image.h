@@ -38,7 +38,7 @@ struct ReferenceImage {
   uint64_t least_samples = 0, most_samples = 0;  ///< of a pixel
   double relative_error = 0;  ///< mean over pixels that light comes from of standard error over mean; 0 below
                               ///< two passes
-  RayCount rays;
+  PathCost rays;
   StopReason stop_reason = StopReason::kSamples;
 };
 

@@ -232,7 +232,7 @@ TEST(IrradianceEstimate, CountsRaysAndTheirTime) {
     estimate.run({.samples = 1024}, CancelToken());
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const RayCount& count = estimate.rays();
+  const PathCost& count = estimate.rays();
   EXPECT_GE(count.rays, 20u * 1024);
   EXPECT_GT(count.ray_share(), 0);
   EXPECT_LT(count.ray_share(), 1);

@@ -270,7 +270,7 @@ TEST(PathTracer, CameraSeesEmissionAndReflectedLight) {
   Ray ray;
   ray.origin = vec3(0.1f, 0.2f, 5);
   ray.direction = vec3(0, 0, -1);
-  RayCount count;
+  PathCost count;
   const auto seen = [&] {
     vec3 nits(0);
     t.tracer->radiance({{CameraPath{ray, {0, 1}}}}, {&nits, 1}, count);

@@ -112,9 +112,10 @@ def _light(program, case, scene, receivers, exact, table, quick, *options, to_wo
     _report(case, "reference", [a["irradiance"][1] for a in answers], exact, table,
             errors=None if stands_in else [a["standard_error"][1] for a in answers], seconds=seconds, note=note)
     if not quick:
-        lit, _, seconds = program.bake(scene, case["id"], *options)
+        lit, light, seconds = program.gather(scene, case["id"], points, *options)
+        _report(case, "hierarchical", [e[1] for e in light], exact, table, seconds=seconds, note=note)
         found = [lit.irradiance(p["point"], p["normal"])[1] for p in points]
-        _report(case, "hierarchical", found, exact, table, seconds=seconds, note=note)
+        _report(case, "vertices", found, exact, table, note=note)
 
 
 def source(program, case, table, quick):
@@ -230,8 +231,8 @@ def interreflection(program, case, table, quick):
 def _cube_light(program, case, scene, points, method):
     """(irradiance, standard error) at the points, and last the mean over the room; and the seconds."""
     if method == "hierarchical":
-        lit, _, seconds = program.bake(scene, case["id"])
-        out = [(lit.irradiance(p["point"], p["normal"])[1], 0) for p in points]
+        lit, light, seconds = program.gather(scene, case["id"], points)
+        out = [(e[1], 0) for e in light]
         return out + [(sum(lit.mean_irradiance(i)[1] for i in range(6)) / 6, 0)], seconds
     answers, seconds = program.trace(scene, case["id"], points, 16384)
     inner = [p for s in scene.surfaces for p in gauss_points(s.positions)]

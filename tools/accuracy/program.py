@@ -45,6 +45,15 @@ class Program:
         seconds = self.run("bake", file, "-o", lit, "-o", gold, "--quiet", *options)
         return Glb(lit), gold, seconds
 
+    def gather(self, scene, name, points, *options):
+        """The lit scene of the hierarchical solver, its light at each {point, normal}, and the seconds."""
+        file, asked, told = self.out / f"{name}.gltf", self.out / "points.json", self.out / "answer.json"
+        write_scene(scene, file)
+        asked.write_text(json.dumps([{"point": p["point"], "normal": p["normal"]} for p in points]))
+        lit = file.with_suffix(".glb")
+        seconds = self.run("bake", file, "-o", lit, "--points", asked, "--json", told, "--quiet", *options)
+        return Glb(lit), [p["irradiance"] for p in json.loads(told.read_text())["points"]], seconds
+
     def trace(self, scene, name, points, samples, *options):
         """The path tracer's {irradiance, standard_error} at each {point, normal}, and the seconds."""
         file, asked = self.out / f"{name}.gltf", self.out / "points.json"

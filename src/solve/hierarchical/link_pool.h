@@ -21,8 +21,9 @@ class LinkPool {
   /// size.
   void sort(size_t elements);
 
-  /// Links into a receiver. Valid after `sort`, until links change.
+  /// Links into a receiver. Valid after `sort`, until links change. Elements made since have none.
   std::span<const Link> into(ElementId receiver) const {
+    if (receiver + size_t{1} >= first_.size()) return {};
     return {links_.data() + first_[receiver], links_.data() + first_[receiver + 1]};
   }
 

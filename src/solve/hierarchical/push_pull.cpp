@@ -117,6 +117,7 @@ struct Sweep {
   RadiosityState& state;
   float most_seen;               // what the form factors of a leaf may add up to
   const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
+  const Regard& regard;
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
   float visit(ElementId id, const Octants& inherited) const {
@@ -207,7 +208,7 @@ struct Sweep {
     // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let
     // light grow.
     const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(share, 1e-20f));
-    const vec3 change = e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
+    const vec3 change = regard.of(e) * e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
     state.radiosity[id] = e.exitance + e.reflectance * irradiance;
     state.shown[id] = state.radiosity[id];
@@ -235,27 +236,20 @@ struct Sweep {
   }
 };
 
-glm::dvec3 landing(const ElementPool& pool, const RadiosityState& state, ElementId id) {
-  const Element& e = pool[id];
-  if (e.first_child != kNoElement)
-    return landing(pool, state, e.first_child) + landing(pool, state, e.first_child + 1);
-  return glm::dvec3(state.irradiance[id]) * static_cast<double>(e.area * e.coverage);
-}
-
 }  // namespace
 
 double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state,
-                        float most_seen) {
+                        float most_seen, const Regard& regard) {
   if (pool.root() == kNoElement) return 0;
   const std::vector<vec3> old = state.shown;
-  const Sweep sweep{pool, links, state, most_seen, old};
+  const Sweep sweep{pool, links, state, most_seen, old, regard};
   const float change = sweep.visit(pool.root(), Octants{});
-  const vec3 all = landing_power(pool, state);
+  const vec3 all = regarded_power(pool, state, regard);
   return static_cast<double>(change) / std::max(1e-30, static_cast<double>(largest(all)));
 }
 
 vec3 landing_power(const ElementPool& pool, const RadiosityState& state) {
-  return pool.root() == kNoElement ? vec3(0) : vec3(landing(pool, state, pool.root()));
+  return regarded_power(pool, state, Regard());
 }
 
 }  // namespace goldthread

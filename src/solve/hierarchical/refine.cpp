@@ -83,7 +83,10 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
                 const RefineOptions& options) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
-  const LinkError error = estimate_error(pool, state, link);
+  LinkError error = estimate_error(pool, state, link);
+  const double weight = static_cast<double>(options.regard.of(pool[link.receiver]));
+  error.receiver *= weight;
+  error.source *= weight;
   if (error.total() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area),
              source = may_open_source(s, options.least_area);
@@ -223,7 +226,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;
-  if (link.visibility > 0 && link.visibility < 255 && s.radius > r.radius)
+  if (link.visibility > 0 && link.visibility < 255 && (s.radius > r.radius || s.kind == ElementKind::kSky))
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
   return error;
 }
@@ -290,13 +293,14 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
 }
 
 void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
-                 const RadiosityState& state, double power_error, const CancelToken& cancel,
+                 const RadiosityState& state, const RefineOptions& options, const CancelToken& cancel,
                  RayCount& total_rays) {
   std::vector<Link>& all = links.all();
   uint32_t views = 0;
   for (Link& link : all) link.view = is_uneven(pool, state, link) ? views++ : kNoView;
   links.views().resize(views);
-  const double mean = static_cast<double>(largest(landing_power(pool, state)) / pool[pool.root()].area);
+  const double mean = static_cast<double>(largest(regarded_power(pool, state, options.regard))) /
+                      std::max(regarded_area(pool, options.regard), 1e-300);
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(
       all.size(),
@@ -309,8 +313,10 @@ void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool
         Link& link = all[i];
         const auto b = static_cast<double>(largest(state.shown[link.source]));
         const double area = static_cast<double>(pool[link.receiver].area);
+        const double weight = static_cast<double>(options.regard.of(pool[link.receiver]));
         const auto tolerance = static_cast<float>(
-            std::min(kNoise * power_error / std::max(area, 1e-300), kBlotch * mean) / std::max(b, 1e-300));
+            std::min(kNoise * options.power_error / std::max(area * weight, 1e-300), kBlotch * mean) /
+            std::max(b, 1e-300));
         measure_link(pool, visibility, link, tolerance,
                      link.view != kNoView ? &links.views()[link.view] : nullptr, cast);
         rays.fetch_add(cast.rays, std::memory_order_relaxed);

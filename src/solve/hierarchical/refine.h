@@ -5,11 +5,13 @@
 #include "base/progress.h"
 #include "solve/hierarchical/link_pool.h"
 #include "solve/hierarchical/radiosity_state.h"
+#include "solve/hierarchical/regard.h"
 
 namespace goldthread {
 
 struct RefineOptions {
-  double power_error = 0;   ///< lm: links whose estimated error of received power is larger are refined
+  double power_error = 0;   ///< lm: links whose estimated error of received power counts for more are refined
+  Regard regard;            ///< how much receivers' area counts
   float least_area = 0;     ///< m^2: receivers are not cut below this
   uint64_t most_links = 0;  ///< stop refining beyond; 0 for no limit
 };
@@ -36,8 +38,9 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
                       const std::function<void()>& between_waves);
 
 /// Measures all links anew, once no more will be refined, and looks at which places of uneven sources they
-/// see (measure_link). `power_error` as in RefineOptions. Rays are added to `rays`.
+/// see (measure_link). Rays are added to `rays`.
 void measure_all(const ElementPool& pool, const Visibility& visibility, LinkPool& links,
-                 const RadiosityState& state, double power_error, const CancelToken& cancel, RayCount& rays);
+                 const RadiosityState& state, const RefineOptions& options, const CancelToken& cancel,
+                 RayCount& rays);
 
 }  // namespace goldthread

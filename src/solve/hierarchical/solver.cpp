@@ -9,7 +9,7 @@ namespace goldthread {
 
 HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster,
                                        const SolveOptions& options)
-    : options_(options), pool_(surfaces), bound_(options.first_error) {
+    : options_(options), pool_(surfaces), regard_(surfaces), bound_(options.first_error) {
   visibility_.caster = &caster;
   visibility_.epsilon = caster.epsilon();
   // Spread over all bits: seeds are small numbers, and so are some of what they are mixed with.
@@ -36,17 +36,17 @@ double HierarchicalSolver::first_power() const {
 
 bool HierarchicalSolver::step(const CancelToken& cancel) {
   if (pool_.root() == kNoElement || stats_.converged) return false;
-  const double landing = static_cast<double>(largest(landing_power(pool_, state_)));
+  const double landing = static_cast<double>(largest(regarded_power(pool_, state_, regard_)));
   RefineOptions refine_options;
   refine_options.power_error = bound_ * (stats_.iterations == 0 ? first_power() : landing);
-  refine_options.least_area =
-      static_cast<float>(options_.least_area * static_cast<double>(pool_[pool_.root()].area));
+  refine_options.regard = regard_;
+  refine_options.least_area = static_cast<float>(options_.least_area * regarded_area(pool_, regard_));
   refine_options.most_links = options_.most_links;
   const RefineCounters counters =
       refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
-  if (last) measure_all(pool_, visibility_, links_, state_, refine_options.power_error, cancel, stats_.rays);
+  if (last) measure_all(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays);
   // The first steps only have to find where the light goes; the last has to settle.
   sweep(last ? 400 : 3, last ? options_.settled : 30 * options_.settled, cancel);
   if (cancel.cancelled()) return false;
@@ -62,7 +62,7 @@ void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken&
   float most_seen = 1.25f;
   double before = std::numeric_limits<double>::max();
   for (uint32_t i = 0; i < most; ++i) {
-    const double change = gather_push_pull(pool_, links_, state_, most_seen);
+    const double change = gather_push_pull(pool_, links_, state_, most_seen, regard_);
     ++stats_.iterations;
     if (i > 10 && change >= before) most_seen = 1;
     before = change;
@@ -73,7 +73,7 @@ void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken&
     const double error = estimate_error(pool_, state_, link).total();
     squares += error * error;
   }
-  const double landing = static_cast<double>(largest(landing_power(pool_, state_)));
+  const double landing = static_cast<double>(largest(regarded_power(pool_, state_, regard_)));
   stats_.error_estimate = landing > 0 ? std::sqrt(squares) / landing : 0;
 }
 

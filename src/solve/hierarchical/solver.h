@@ -44,6 +44,13 @@ class HierarchicalSolver {
   /// cancelled midway, the links made so far are swept once, so that the state is always a solution.
   bool step(const CancelToken& cancel);
 
+  /// Gives leaves (ascending ids) children for the sake of what is shown of them: no links lead to these, all
+  /// above them are theirs. One that cannot be divided stays as it is.
+  void cut_leaves(std::span<const ElementId> leaves) {
+    pool_.expand(leaves);
+    state_.grow_to(pool_);
+  }
+
   /// 0..1 by bounds done.
   double share_done() const;
 
@@ -51,6 +58,7 @@ class HierarchicalSolver {
   const LinkPool& links() const { return links_; }
   const RadiosityState& state() const { return state_; }
   const Visibility& visibility() const { return visibility_; }
+  const Regard& regard() const { return regard_; }
   const SolveStats& stats() const { return stats_; }
   uint64_t memory_bytes() const;
 
@@ -65,6 +73,7 @@ class HierarchicalSolver {
 
   const SolveOptions options_;
   ElementPool pool_;
+  const Regard regard_;
   Visibility visibility_;
   LinkPool links_;
   RadiosityState state_;

@@ -38,7 +38,7 @@ struct Visibility {
   float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
   uint32_t seed = 0;                  ///< chooses among all patterns of points and rays
 
-  /// Casts `rays` (1..64) rays from `x` with unit normal `n` to points on the real triangles of `source`, or
+  /// Casts `rays` rays from `x` with unit normal `n` to points on the real triangles of `source`, or
   /// into the sky. `turn` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
   /// places where they arrived to `places` (surfaces only), if given. Not for point lights and suns.
   SeenShare look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,

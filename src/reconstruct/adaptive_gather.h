@@ -1,0 +1,99 @@
+// Light at all light points, and the mesh cut where what lies between them is not what they say.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "reconstruct/final_gather.h"
+#include "reconstruct/light_points.h"
+#include "reconstruct/reconstruct.h"
+
+namespace goldthread {
+
+/// Gathers light at the corners of the leaf mesh, then at places within the faces, and compares: where light
+/// bends between the corners (a shadow's edge, a contact), the leaf is cut and its new corners are gathered,
+/// until what the faces are still wrong by amounts to no more than the tolerance. Links say how light
+/// travels, and a few elements do for that; how many it takes to show it, only the shown light can tell.
+class AdaptiveGather {
+ public:
+  /// All are borrowed. Elements are added to the solver's, links are not.
+  AdaptiveGather(HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
+                 ReconstructStats& stats);
+
+  /// When cancelled, what is not yet gathered is the mean of the leaves around it.
+  void run();
+
+  bool is_lit(uint32_t part) const { return !parts_[part].sides.empty(); }
+  const PartPoints& points(uint32_t part) const { return parts_[part].points; }
+  /// Lux by light point; the back's of two-sided parts.
+  const std::vector<vec3>& light(uint32_t part, bool back) const {
+    return parts_[part].sides[back ? 1 : 0].light;
+  }
+  bool is_two_sided(uint32_t part) const { return parts_[part].sides.size() > 1; }
+  const ShownLight& shown() const { return shown_; }
+
+ private:
+  // What has been gathered at a vertex, for each normal there.
+  struct Kept {
+    vec3 normal{0}, light{0};
+    float variance = 0;
+    float reach = 0;  // metres to the middle of the face it was drawn into
+    bool buried = false;
+    ElementId near_leaf = kNoElement;
+    uint32_t next = kNone;
+  };
+  struct Side {
+    std::vector<ElementId> leaves;     // by face
+    std::vector<vec3> light;           // by point
+    std::vector<float> variance;       // by point
+    std::vector<uint8_t> buried;       // by point
+    std::vector<uint32_t> first_kept;  // by vertex
+    std::vector<Kept> kept;
+  };
+  struct PartLight {
+    PartPoints points;
+    std::vector<Side> sides;
+    bool changed = true;
+  };
+  struct Job {
+    uint32_t part = 0, side = 0, point = 0;
+    uint32_t kept = kNone;  // to be overwritten
+  };
+  // What is wrong in a leaf, and how much light it gets.
+  struct LeafError {
+    double area = 0, square = 0;    // m^2, lux^2: mean over the tests
+    vec3 light{0};                  // lux, mean
+    uint32_t tests = 0, looks = 0;  // places, and how often places were chosen
+    double squares() const { return area * square; }
+    void add(const LeafError& more);
+  };
+  struct Test {
+    uint32_t part = 0, side = 0, first_face = 0, faces = 0;  // in leaf_faces_
+    ElementId leaf = kNoElement;
+  };
+  static constexpr uint32_t kNone = 0xffffffffu;
+
+  void collect(uint32_t part);
+  void update_points();
+  bool is_hidden(const Gathered& gathered, const vec3& x, const vec3& n, RayCount& count) const;
+  void gather(const std::vector<Job>& jobs);
+  void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vector<vec3>& light) const;
+  std::vector<Test> list_tests(bool again);
+  LeafError test(const Test& test, double unit_area, RayCount& count) const;
+  void test_leaves(bool again);
+  bool cut();
+  void show_leaves();
+
+  HierarchicalSolver& solver_;
+  const ReconstructOptions& options_;
+  const CancelToken& cancel_;
+  ReconstructStats& stats_;
+  const GatherOptions gather_;
+  ShownLight shown_;
+  std::vector<PartLight> parts_;
+  std::vector<uint32_t> leaf_faces_;  // faces of the leaves being tested
+  std::vector<LeafError> errors_;     // by element; area 0: not tested
+  size_t solved_elements_ = 0;        // those that the solver knows
+  std::vector<uint8_t> cut_;          // by element: the solver's leaves that were cut here
+};
+
+}  // namespace goldthread

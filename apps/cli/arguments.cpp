@@ -34,6 +34,7 @@ constexpr const char* kReferenceExamples =
     "  goldthread reference room.glb --points 1000 --target-error 1% --json room.json\n"
     "  goldthread reference room.glb --resume room.json --samples 65536 --json room.json\n"
     "  goldthread reference room.glb --vertices --time-limit 600 --json vertices.json\n"
+    "  goldthread reference room.glb --texels 256 --samples 4096 -o map.exr --json map.json\n"
     "  goldthread reference house.obj -o house.png --sky 10000lux --sun 80000 --samples 256";
 
 constexpr const char* kMakeExamples =
@@ -120,7 +121,8 @@ struct BakeTexts {
   LightTexts light;
 };
 struct ReferenceTexts {
-  std::string points, target_error, picture;
+  std::string points, texels, target_error, picture;
+  int uv = 0;
   uint64_t samples = 0, seed = 0;
   double time_limit = 0;
   LightTexts light;
@@ -217,12 +219,24 @@ void add_reference(CLI::App& app, ReferenceCommand& reference, ReferenceTexts& t
       ->type_name("N|FILE")
       ->group(group);
   verb->add_flag("--vertices", options.vertices, "irradiance at all vertices")->group(group);
+  verb->add_option("--texels", texts.texels,
+                   "irradiance at the texels of a light map for each lit primitive of each\n"
+                   "instance, by its texture coordinates; SIZE as 256 or 256x128")
+      ->type_name("SIZE")
+      ->group(group);
+  verb->add_option("--uv", texts.uv, "TEXCOORD_0 or _1 for --texels (1 where there is one, else 0)")
+      ->type_name("0|1")
+      ->check(CLI::Range(0, 1).description(""))
+      ->group(group);
   verb->add_option("--resume", options.resume_file,
-                   "more samples for the points of an earlier --json FILE,\nor with -o for the pixels of an "
-                   "earlier -o FILE.exr")
+                   "more samples for the points or texels of an earlier --json FILE,\nor with -o for the "
+                   "pixels of an earlier -o FILE.exr")
       ->type_name("FILE")
       ->group(group);
-  verb->add_option("-o", options.pictures, "a picture, .png or .exr; more than once")
+  verb->add_option("-o", options.pictures,
+                   "a picture, .png or .exr; more than once. With --texels irradiance in lux, .exr;\n"
+                   "of several primitives map-INSTANCE-PRIMITIVE.exr for each, from 0, and -back\n"
+                   "for a two-sided one's back. A, samples, error: covered or not, of each texel")
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(group);
@@ -302,9 +316,22 @@ Status finish_points(const std::string& text, ReferenceOptions& options) {
   return Nothing{};
 }
 
+Status finish_texels(const CLI::App& verb, const ReferenceTexts& texts, ReferenceOptions& options) {
+  if (verb.count("--texels") == 0)
+    return verb.count("--uv") == 0
+               ? Status(Nothing{})
+               : usage_error("--uv says where --texels lie, and there are none", "add --texels 256");
+  const auto size = parse_picture_size(texts.texels);
+  if (!size) return usage_error("--texels: '" + texts.texels + "' is no size", "write 256 or 256x128");
+  options.texels = {size->width, size->height > 0 ? size->height : size->width, std::nullopt};
+  if (verb.count("--uv") > 0) options.texels->uv = texts.uv;
+  return Nothing{};
+}
+
 Status finish_reference(const CLI::App& verb, const ReferenceTexts& texts, ReferenceOptions& options) {
   if (verb.count("--points") > 0)
     if (Status status = finish_points(texts.points, options); !status) return status;
+  if (Status status = finish_texels(verb, texts, options); !status) return status;
   if (verb.count("--samples") > 0) options.samples = texts.samples;
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--seed") > 0) options.seed = texts.seed;

@@ -14,7 +14,9 @@
 #include "files/scene_read.h"
 #include "math/colour.h"
 #include "math/tone_map.h"
+#include "session/light_map.h"
 #include "session/light_setup.h"
+#include "session/reference_options.h"
 #include "session/reference_picture.h"
 #include "session/reference_points.h"
 #include "session/watched.h"
@@ -26,10 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr uint64_t kUsualSamples = 1024, kUsualPixelSamples = 64;
-
-Error usage(std::string message, std::string cure) {
-  return Error{ErrorCode::kUsage, std::move(message), {}, {}, std::move(cure)};
-}
 
 Status write_out(const std::string& file, const std::string& text) {
   return write_file_atomically(file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
@@ -60,12 +58,12 @@ class Run {
       : options_(options), listener_(listener) {}
 
   Result<ReferenceResult> run() {
-    if (const Status status = check_options(); !status) return status.error();
+    if (const Status status = check_reference_options(options_); !status) return status.error();
     threads_ = options_.threads > 0 ? options_.threads : tbb::info::default_concurrency();
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       static_cast<size_t>(threads_));
     if (const Status status = load(); !status) return status.error();
-    if (const Status status = options_.pictures.empty() ? measure() : paint(); !status) return status.error();
+    if (const Status status = paints(options_) ? paint() : measure(); !status) return status.error();
     if (!options_.report_file.empty()) {
       if (const Status status = write_out(options_.report_file, result_.report); !status)
         return status.error();
@@ -75,14 +73,15 @@ class Run {
   }
 
  private:
-  Status check_options() const;
   Status load();
   Status measure();
   Status paint();
-  bool resumes_picture() const { return file_extension(options_.resume_file) == ".exr"; }
   Status write_shown(const std::string& file, FloatImage picture) const;
   Status resume_picture(ReferenceImageOptions& image_options) const;
-  Result<SavedEstimate> receivers() const;
+  Result<SavedEstimate> receivers();
+  Result<SavedEstimate> resumed() const;
+  Status lay_out_texels(SavedEstimate& estimate);
+  Status write_light_maps(const SavedEstimate& estimate);
   Status write_json(const SavedEstimate& estimate);
   void describe_points(const SavedEstimate& estimate);
   void describe_run(Json& figures, uint64_t rays, double seconds, double ray_share, StopReason reason);
@@ -100,31 +99,6 @@ class Run {
   Json figures_;
   ReferenceResult result_;
 };
-
-Status Run::check_options() const {
-  const int wishes = int(!options_.points_file.empty()) + int(options_.random_points > 0) +
-                     int(options_.vertices) + int(!options_.resume_file.empty() && !resumes_picture()) +
-                     int(!options_.pictures.empty());
-  if (resumes_picture() && options_.pictures.empty())
-    return usage("--resume goes on with a picture, and none is asked for", "add -o " + options_.resume_file);
-  if (wishes == 0)
-    return usage("nothing to measure",
-                 "add --points 1000, --points FILE.json, --vertices, --resume FILE.json or -o x.png");
-  if (wishes > 1)
-    return usage("--points, --vertices, --resume and -o each say what to measure", "give one of them");
-  if (!options_.pictures.empty() && !options_.json_file.empty())
-    return usage("--json is for points; a picture has none", "leave --json out, or use --report");
-  for (const std::string& file : options_.pictures) {
-    const std::string extension = file_extension(file);
-    if (extension != ".png" && extension != ".exr")
-      return Error{ErrorCode::kUsage, "cannot tell the picture's format", file, {}, "end it in .png or .exr"};
-    if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
-  }
-  for (const std::string& file : {options_.json_file, options_.report_file})
-    if (!file.empty() && file != "-")
-      if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
-  return Nothing{};
-}
 
 Status Run::load() {
   if (listener_.on_progress) listener_.on_progress({"load", 0, 0, 0, since(start_), -1});
@@ -173,29 +147,54 @@ void Run::run_watched(const EstimateProgress& progress, const Work& work) {
       });
 }
 
+Result<SavedEstimate> Run::resumed() const {
+  Result<SavedEstimate> saved = read_estimate(options_.resume_file);
+  if (!saved) return saved.error();
+  if (saved->fingerprint != traced_->fingerprint())
+    return Error{ErrorCode::kBadInput,
+                 "was made of another scene, or under another light",
+                 options_.resume_file,
+                 {},
+                 "give the scene, --sky and --sun that it was made with"};
+  if (options_.seed && *options_.seed != saved->seed)
+    return usage_error(
+        fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
+        "leave --seed out");
+  if (!options_.pictures.empty() && saved->layout.width == 0)
+    return Error{ErrorCode::kUsage,
+                 "holds no texels, of which -o could make light maps",
+                 options_.resume_file,
+                 {},
+                 "leave -o out, or give a file of --texels"};
+  return saved;
+}
+
+Status Run::lay_out_texels(SavedEstimate& estimate) {
+  const ReferenceOptions::Texels& wish = *options_.texels;
+  estimate.layout.width = static_cast<uint32_t>(wish.width);
+  estimate.layout.height = static_cast<uint32_t>(wish.height);
+  if (wish.uv) estimate.layout.uv = static_cast<uint32_t>(*wish.uv);
+  TexelReceivers texels = texel_receivers(*traced_, estimate.layout);
+  if (texels.receivers.empty() && texels.problems.parts > 0)
+    return no_texels(texels, estimate.layout, options_.input);
+  for (std::string& line : texel_warnings(texels.problems, estimate.layout))
+    result_.warnings.push_back(std::move(line));
+  estimate.receivers = std::move(texels.receivers);
+  return Nothing{};
+}
+
 /// The points to measure, with what is known of them.
-Result<SavedEstimate> Run::receivers() const {
+Result<SavedEstimate> Run::receivers() {
   SavedEstimate estimate;
-  if (!options_.resume_file.empty()) {
-    Result<SavedEstimate> saved = read_estimate(options_.resume_file);
-    if (!saved) return saved.error();
-    if (saved->fingerprint != traced_->fingerprint())
-      return Error{ErrorCode::kBadInput,
-                   "was made of another scene, or under another light",
-                   options_.resume_file,
-                   {},
-                   "give the scene, --sky and --sun that it was made with"};
-    if (options_.seed && *options_.seed != saved->seed)
-      return usage(fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
-                   "leave --seed out");
-    return saved;
-  }
+  if (!options_.resume_file.empty()) return resumed();
   estimate.seed = options_.seed.value_or(0);
   estimate.fingerprint = traced_->fingerprint();
   if (!options_.points_file.empty()) {
     Result<std::vector<Receiver>> points = read_points(options_.points_file, *traced_);
     if (!points) return points.error();
     estimate.receivers = std::move(*points);
+  } else if (options_.texels) {
+    if (const Status status = lay_out_texels(estimate); !status) return status.error();
   } else if (options_.vertices) {
     estimate.receivers = vertex_receivers(*traced_);
   } else {
@@ -227,6 +226,7 @@ Status Run::measure() {
   estimate.ray_time_share =
       (estimate.ray_time_share * before_seconds + tracing.rays().ray_share() * seconds) / estimate.seconds;
   describe_points(estimate);
+  if (const Status status = write_light_maps(estimate); !status) return status.error();
   describe_run(figures_, estimate.rays, estimate.seconds, estimate.ray_time_share, reason);
   figures_["seed"] = estimate.seed;
   result_.report = figures_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -239,6 +239,21 @@ Status Run::write_json(const SavedEstimate& estimate) {
   if (options_.json_file == "-") return Nothing{};  // the caller prints
   if (const Status status = write_out(options_.json_file, result_.json); !status) return status.error();
   result_.written.push_back(options_.json_file);
+  return Nothing{};
+}
+
+Status Run::write_light_maps(const SavedEstimate& estimate) {
+  if (estimate.layout.width == 0) return Nothing{};
+  const std::vector<LightMap> maps = light_maps_of(estimate.receivers);
+  figures_["light_maps"] = describe_light_maps(maps, scene_);
+  result_.summary += fmt::format("{} light map{} of {} x {} texels\n", maps.size(),
+                                 maps.size() == 1 ? "" : "s", estimate.layout.width, estimate.layout.height);
+  for (const std::string& file : options_.pictures)
+    for (const LightMap& map : maps) {
+      const std::string name = light_map_file(file, map, maps.size());
+      if (const Status status = write_light_map(name, estimate, map); !status) return status.error();
+      result_.written.push_back(name);
+    }
   return Nothing{};
 }
 
@@ -295,16 +310,17 @@ Status Run::resume_picture(ReferenceImageOptions& image_options) const {
                  {},
                  "give the scene, --sky and --sun that it was made with"};
   if (options_.seed && *options_.seed != saved->seed)
-    return usage(fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
-                 "leave --seed out");
+    return usage_error(
+        fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
+        "leave --seed out");
   const bool other_size =
       options_.picture_width != ReferenceOptions().picture_width || options_.picture_height != 0;
   if (other_size &&
       (options_.picture_width != static_cast<int>(saved->width) ||
        (options_.picture_height != 0 && options_.picture_height != static_cast<int>(saved->height))))
-    return usage(fmt::format("--picture-size is not that of the picture that is resumed, {}x{}", saved->width,
-                             saved->height),
-                 "leave --picture-size out");
+    return usage_error(fmt::format("--picture-size is not that of the picture that is resumed, {}x{}",
+                                   saved->width, saved->height),
+                       "leave --picture-size out");
   image_options.seed = saved->seed;
   image_options.width = static_cast<int>(saved->width);
   image_options.height = static_cast<int>(saved->height);
@@ -323,7 +339,7 @@ Status Run::paint() {
   image_options.width = options_.picture_width;
   image_options.height = options_.picture_height;
   image_options.seed = options_.seed.value_or(0);
-  if (resumes_picture())
+  if (resumes_picture(options_))
     if (const Status status = resume_picture(image_options); !status) return status.error();
   EstimateProgress progress;
   ReferenceImage traced;

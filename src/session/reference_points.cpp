@@ -97,9 +97,15 @@ std::string record_of(const Receiver& receiver, const IrradianceSums& sums) {
   std::string text = "{";
   append(text, "point", dvec3(receiver.point));
   append(text, "normal", dvec3(receiver.normal));
-  if (receiver.instance != Receiver::kNowhere)
-    fmt::format_to(std::back_inserter(text), R"("instance":{},"primitive":{},"vertex":{},"back":{},)",
-                   receiver.instance, receiver.primitive, receiver.vertex, receiver.back);
+  if (receiver.instance != Receiver::kNowhere) {
+    fmt::format_to(std::back_inserter(text), R"("instance":{},"primitive":{},)", receiver.instance,
+                   receiver.primitive);
+    if (receiver.is_texel())
+      fmt::format_to(std::back_inserter(text), R"("texel":[{},{}],)", receiver.texel_x, receiver.texel_y);
+    else
+      fmt::format_to(std::back_inserter(text), R"("vertex":{},)", receiver.vertex);
+    fmt::format_to(std::back_inserter(text), R"("back":{},)", receiver.back);
+  }
   if (sums.samples > 0) {
     const IrradianceValue value = evaluate(sums);
     append(text, "irradiance", value.mean);
@@ -117,7 +123,7 @@ std::string record_of(const Receiver& receiver, const IrradianceSums& sums) {
 }
 
 /// False where the record is not what `record_of` writes.
-bool from_json(const Json& record, Receiver& receiver, IrradianceSums& sums) {
+bool from_json(const Json& record, const TexelLayout& layout, Receiver& receiver, IrradianceSums& sums) {
   const auto point = vector_of(record, "point"), normal = vector_of(record, "normal"),
              origin = vector_of(record, "origin");
   if (!point || !normal || !origin || !record.contains("samples")) return false;
@@ -126,12 +132,19 @@ bool from_json(const Json& record, Receiver& receiver, IrradianceSums& sums) {
   receiver.normal = vec3(*normal);
   receiver.origin = vec3(*origin);
   if (!(std::abs(length(receiver.normal) - 1) < 1e-3f)) return false;
-  if (record.contains("vertex")) {
+  if (record.contains("instance")) {
     receiver.instance = record.at("instance").get<uint32_t>();
     receiver.primitive = record.at("primitive").get<uint32_t>();
-    receiver.vertex = record.at("vertex").get<uint32_t>();
     receiver.back = record.at("back").get<bool>();
+    if (layout.width > 0) {
+      receiver.texel_x = record.at("texel").at(0).get<uint32_t>();
+      receiver.texel_y = record.at("texel").at(1).get<uint32_t>();
+      if (receiver.texel_x >= layout.width || receiver.texel_y >= layout.height) return false;
+    } else {
+      receiver.vertex = record.at("vertex").get<uint32_t>();
+    }
   }
+  if (receiver.is_texel() != (layout.width > 0)) return false;
   sums.samples = record["samples"].get<uint64_t>();
   if (sums.samples % kBatches != 0) return false;
   if (sums.samples == 0) return true;
@@ -139,6 +152,15 @@ bool from_json(const Json& record, Receiver& receiver, IrradianceSums& sums) {
   for (size_t i = 0; i < 3 * kBatches; ++i)
     sums.batches[i / 3][static_cast<int>(i % 3)] = record["batch_sums"][i].get<double>();
   return true;
+}
+
+/// False where the layout is not one that `write_estimate` writes.
+bool layout_from_json(const Json& record, TexelLayout& layout) {
+  layout.width = record.at("width").get<uint32_t>();
+  layout.height = record.at("height").get<uint32_t>();
+  if (!record.at("uv").is_null()) layout.uv = record.at("uv").get<uint32_t>();
+  const auto fits = [](uint32_t side) { return side >= 1 && side <= kMostTexelsAside; };
+  return fits(layout.width) && fits(layout.height);
 }
 
 }  // namespace
@@ -188,6 +210,10 @@ std::string write_light(Json figures, const std::vector<Receiver>& receivers,
 }
 
 std::string write_estimate(Json figures, const SavedEstimate& estimate) {
+  if (const TexelLayout& layout = estimate.layout; layout.width > 0)
+    figures["texels"] = {{"width", layout.width},
+                         {"height", layout.height},
+                         {"uv", layout.uv ? Json(*layout.uv) : Json(nullptr)}};
   figures["seed"] = estimate.seed;
   figures["rays"] = estimate.rays;
   figures["seconds"] = estimate.seconds;
@@ -210,12 +236,14 @@ Result<SavedEstimate> read_estimate(const std::string& file) {
     saved.rays = json->at("rays").get<uint64_t>();
     saved.seconds = json->at("seconds").get<double>();
     saved.ray_time_share = json->at("ray_time_share").get<double>();
+    if (json->contains("texels") && !layout_from_json(json->at("texels"), saved.layout))
+      return bad(file, "texels", "are no size that there can be", kResumeCure);
     const Json& points = json->at("points");
     for (size_t i = 0; i < points.size(); ++i) {
       place = fmt::format("point {}", i);
       saved.receivers.emplace_back();
       saved.sums.emplace_back();
-      if (!from_json(points.at(i), saved.receivers.back(), saved.sums.back()))
+      if (!from_json(points.at(i), saved.layout, saved.receivers.back(), saved.sums.back()))
         return bad(file, place, "cannot be gone on from", kResumeCure);
     }
   } catch (const Json::exception&) {

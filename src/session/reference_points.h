@@ -7,6 +7,7 @@
 
 #include "goldthread/error.h"
 #include "trace/irradiance_estimate.h"
+#include "trace/texel_receivers.h"
 
 namespace goldthread {
 
@@ -24,13 +25,15 @@ struct SavedEstimate {
   uint64_t seed = 0, fingerprint = 0;
   uint64_t rays = 0;
   double seconds = 0, ray_time_share = 0;
+  TexelLayout layout;  ///< width 0 where the receivers are no texels
   std::vector<Receiver> receivers;
   std::vector<IrradianceSums> sums;
 };
 
-/// `figures` as a JSON object with all that `read_estimate` needs besides, a point a line: its place, its
-/// irradiance (lux), standard error and samples, and its batches' sums, whose doubles survive the text
-/// exactly. Points without samples have null for irradiance and error.
+/// `figures` as a JSON object with all that `read_estimate` needs besides, a point a line: its place (with
+/// `instance`, `primitive`, `back`, and `vertex` or `texel` [x, y] of what is one), its irradiance (lux),
+/// standard error and samples, and its batches' sums, whose doubles survive the text exactly. Points without
+/// samples have null for irradiance and error.
 std::string write_estimate(nlohmann::ordered_json figures, const SavedEstimate& estimate);
 Result<SavedEstimate> read_estimate(const std::string& file);
 

@@ -36,18 +36,6 @@ uint64_t next_look(uint64_t now) {
   return look;
 }
 
-double relative_error(const IrradianceSums& sums) {
-  const double mean = luminance_of(evaluate(sums).mean);
-  if (!(mean > 0)) return 0;
-  double squares = 0;
-  const double each = static_cast<double>(sums.samples) / kBatches;
-  for (const dvec3& batch : sums.batches) {
-    const double off = luminance_of(batch) / each - mean;
-    squares += off * off;
-  }
-  return std::sqrt(squares / (kBatches * (kBatches - 1))) / mean;
-}
-
 /// Samples that are traced together, each added to the sum that it is for.
 class Samples {
  public:
@@ -89,11 +77,24 @@ IrradianceValue evaluate(const IrradianceSums& sums) {
   return value;
 }
 
+double luminance_standard_error(const IrradianceSums& sums) {
+  if (sums.samples == 0) return 0;
+  const double mean = luminance_of(evaluate(sums).mean);
+  double squares = 0;
+  const double each = static_cast<double>(sums.samples) / kBatches;
+  for (const dvec3& batch : sums.batches) {
+    const double off = luminance_of(batch) / each - mean;
+    squares += off * off;
+  }
+  return std::sqrt(squares / (kBatches * (kBatches - 1)));
+}
+
 double mean_relative_error(const std::vector<IrradianceSums>& points) {
   double sum = 0, lit = 0;
   for (const IrradianceSums& point : points) {
-    if (point.samples == 0 || !(luminance_of(evaluate(point).mean) > 0)) continue;
-    sum += relative_error(point);
+    const double mean = luminance_of(evaluate(point).mean);
+    if (!(mean > 0)) continue;
+    sum += luminance_standard_error(point) / mean;
     lit += 1;
   }
   return lit > 0 ? sum / lit : 0;

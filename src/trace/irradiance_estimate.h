@@ -32,6 +32,9 @@ struct IrradianceValue {
 /// Of no samples: zero.
 IrradianceValue evaluate(const IrradianceSums& sums);
 
+/// Of the mean's luminance, lux; 0 of no samples.
+double luminance_standard_error(const IrradianceSums& sums);
+
 /// Mean over all points that any light has reached of standard error over mean, both as luminance; 0 when
 /// there are none.
 double mean_relative_error(const std::vector<IrradianceSums>& points);

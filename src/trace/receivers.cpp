@@ -120,9 +120,7 @@ std::vector<VertexFaces> gather_faces(const TracedScene& scene, const TracedPart
 
 void add_vertices(const TracedScene& scene, const TracedPart& part, std::vector<Receiver>& out) {
   const mat4& transform = scene.scene().instances[part.instance].transform;
-  const mat3 linear(transform);
-  const mat3 normal_map =
-      (glm::determinant(linear) < 0 ? -1.0f : 1.0f) * area_vector_transform(linear);  // the winding turns too
+  const mat3 normal_map = normal_transform(transform);
   const std::vector<VertexFaces> faces = gather_faces(scene, part);
   for (uint32_t v = 0; v < faces.size(); ++v) {
     if (faces[v].triangle == Receiver::kNowhere) continue;
@@ -161,6 +159,18 @@ std::vector<Receiver> vertex_receivers(const TracedScene& scene) {
   for (const TracedPart& part : scene.parts())
     if (!part.material->unlit) add_vertices(scene, part, receivers);
   return receivers;
+}
+
+vec3 ray_origin(const TracedScene& scene, uint32_t triangle, const vec3& p, const vec3& outward) {
+  // In the middle of a surface it stays where it is, even between two triangles.
+  return meets_another_plane(scene, triangle, p, 4 * scene.epsilon())
+             ? off_the_edge(scene, triangle, p, outward)
+             : p + scene.epsilon() * outward;
+}
+
+mat3 normal_transform(const mat4& instance_transform) {
+  const mat3 linear(instance_transform);
+  return (glm::determinant(linear) < 0 ? -1.0f : 1.0f) * area_vector_transform(linear);
 }
 
 bool is_buried(const TracedScene& scene, const Receiver& receiver) {
@@ -214,10 +224,7 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
   if (on == Receiver::kNowhere) return placed;
   placed.receiver.triangle = on;
   placed.receiver.back = dot(up, scene.triangles()[on].normal) < 0;
-  // In the middle of a surface it stays where it is, even between two triangles.
-  placed.receiver.origin = meets_another_plane(scene, on, foot, 4 * scene.epsilon())
-                               ? off_the_edge(scene, on, foot, up)
-                               : foot + scene.epsilon() * up;
+  placed.receiver.origin = ray_origin(scene, on, foot, up);
   return placed;
 }
 

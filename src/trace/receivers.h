@@ -1,4 +1,5 @@
-// The places at which light is measured: given ones, random ones, or all vertices.
+// The places at which light is measured: given ones, random ones, all vertices; texels are in
+// texel_receivers.h.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,10 +16,14 @@ struct Receiver {
   vec3 origin{0};                ///< where rays start: a little above the surface, off its edges
   uint32_t triangle = kNowhere;  ///< of a random or given place: TracedScene::triangles()
   vec2 weights{0};               ///< there, of corners 1 and 2
-  uint32_t instance = kNowhere;  ///< of a vertex: Scene::instances
-  uint32_t primitive = 0;        ///< of a vertex: Mesh::primitives
-  uint32_t vertex = 0;           ///< of a vertex: Primitive::positions
+  uint32_t instance = kNowhere;  ///< of a vertex or texel: Scene::instances
+  uint32_t primitive = 0;        ///< of a vertex or texel: Mesh::primitives
+  uint32_t vertex = kNowhere;    ///< of a vertex: Primitive::positions
+  uint32_t texel_x = kNowhere;   ///< of a texel: its column, from u = 0
+  uint32_t texel_y = 0;          ///< of a texel: its row, from v = 0
   bool back = false;             ///< the back of a two-sided surface
+
+  bool is_texel() const { return texel_x != kNowhere; }
 };
 
 /// `count` points spread evenly by area over all sides that receive light: fronts, and backs of what is
@@ -37,6 +42,13 @@ struct PlacedReceiver {
   float distance = 0;
 };
 PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const vec3& unit_normal);
+
+/// Where rays of point p of a triangle start: an epsilon above it on the side of `outward` (unit), and where
+/// another surface meets the triangle there, off that.
+vec3 ray_origin(const TracedScene& scene, uint32_t triangle, const vec3& p, const vec3& outward);
+
+/// What carries a mesh's normals to the world, not unit; mirrors turn the winding, and with it the front.
+mat3 normal_transform(const mat4& instance_transform);
 
 /// Whether nearly all that a receiver looks at (61 of 64 directions) is the black back of something: it lies
 /// inside a solid, as the floor does beneath a box, where nobody sees it.

@@ -65,6 +65,9 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--target-error"], "reference", "x.glb", "--points", "3", "--target-error", "few")
         self.assert_fails(2, ["--target-error"], "reference", "x.glb", "--points", "3", "--target-error", "-1%")
         self.assert_fails(2, ["--samples"], "reference", "x.glb", "--points", "3", "--samples", "0")
+        self.assert_fails(2, ["--texels", "256x128"], "reference", "x.glb", "--texels", "big")
+        self.assert_fails(2, ["--uv"], "reference", "x.glb", "--texels", "8", "--uv", "2")
+        self.assert_fails(2, ["--uv", "--texels"], "reference", "x.glb", "--vertices", "--uv", "1")
         self.assert_fails(2, ["x.jpg", ".png"], "reference", "x.glb", "-o", "x.jpg")
 
     def test_bad_input_is_3(self):
@@ -194,6 +197,21 @@ class CliTest(unittest.TestCase):
         self.assertEqual(self.path("p.png").read_bytes()[1:4], b"PNG")
         self.path("off.json").write_text('[{"point": [0, 0, 0], "normal": [0, 1, 0]}]')
         self.assert_fails(3, ["off.json", "point 0", "0.5 m"], "reference", "furnace.glb", "--points", "off.json")
+
+    def test_reference_texels(self):
+        self.path("floor.obj").write_text("v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nvt 0 0\nvt 0 1\nvt 1 1\nvt 1 0\n"
+                                          "f 1/1 2/2 3/3 4/4\n")
+        done = self.run_it("reference", "floor.obj", "--texels", "4x2", "--uv", "0", "--sky", "10000lux",
+                           "--samples", "256", "-o", "map.exr", "--json", "map.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 light map of 4 x 2 texels", done.stdout)
+        self.assertEqual(self.path("map.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+        points = json.loads(self.path("map.json").read_text())["points"]
+        self.assertEqual(sorted(point["texel"] for point in points), [[x, y] for x in range(4) for y in range(2)])
+        for point in points:
+            self.assertAlmostEqual(point["irradiance"][1], 10000, delta=4 * point["standard_error"][1] + 0.1)
+        self.assert_fails(3, ["floor.obj", "TEXCOORD_1"], "reference", "floor.obj", "--texels", "4", "--uv", "1",
+                          "--sky", "1")
 
     def test_interrupted_reference_writes_what_there_is_and_is_130(self):
         self.run_it("make", "office")

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -42,11 +43,9 @@ class Vs3Reader {
           break;
         case 'S':
         case 'O':
-          surface(record == 'O');
-          break;
         case 'M':
         case 'N':
-          fail("masks and null surfaces are not known");
+          surface(record);
           break;
         default:
           fail(fmt::format("record \"{}\" is not known", plain_text(words_[0])));
@@ -57,11 +56,8 @@ class Vs3Reader {
       fail("holds no surfaces");
     }
     resolve();
-    if (const auto twice = find_twice(model_.surfaces)) {
-      place_ = wanted_[twice->second].place;
-      fail(fmt::format("it lies where the surface of {} lies and faces the same way",
-                       wanted_[twice->first].place));
-    }
+    check_twice(false);
+    check_twice(true);
     return std::move(model_);
   }
 
@@ -117,7 +113,7 @@ class Vs3Reader {
       fail(fmt::format("vertex {} is there twice", whole(1)));
   }
 
-  void surface(bool only_blocks) {
+  void surface(char record) {
     const int64_t id = whole(1);
     // Number, shape or four vertices, then base, whole, emittance and name.
     const size_t after = by_origin_ ? 3 : 6;
@@ -129,15 +125,38 @@ class Vs3Reader {
     if (by_origin_) corners = placed_corners();  // on lines of their own
     place_ = fmt::format("{}: surface {}", start, id);
     if (const std::optional<std::string> problem = polygon_problem(corners)) fail(*problem);
-    if (only_blocks) {
+    if (record == 'O') {
       model_.occluders.push_back(std::move(corners));
       return;
+    }
+    const Cover cover = record == 'M' ? Cover::kMask : record == 'N' ? Cover::kNull : Cover::kNothing;
+    if (cover != Cover::kNothing) {
+      if (base == 0) fail("a mask or null surface needs a base surface");
+      if (combined != 0) fail("a mask or null surface cannot be combined with another");
+      std::reverse(corners.begin(), corners.end());  // the part of the base that it covers
     }
     if (!numbers_.emplace(id, static_cast<uint32_t>(model_.surfaces.size())).second)
       fail("this number is there twice");
     model_.surfaces.push_back(std::move(corners));
     model_.names.push_back(name);
+    model_.cover.push_back(cover);
     wanted_.push_back({base, combined, place_});
+  }
+
+  // Two in one place: of what sends, and of what covers (a mask may cover all of its base).
+  void check_twice(bool covers) {
+    std::vector<Polygon> polygons;
+    std::vector<size_t> numbers;
+    for (size_t s = 0; s < model_.surfaces.size(); ++s) {
+      if ((model_.cover.empty() || model_.cover[s] == Cover::kNothing) == covers) continue;
+      polygons.push_back(model_.surfaces[s]);
+      numbers.push_back(s);
+    }
+    const auto twice = find_twice(polygons);
+    if (!twice) return;
+    place_ = wanted_[numbers[twice->second]].place;
+    fail(fmt::format("it lies where the surface of {} lies and faces the same way",
+                     wanted_[numbers[twice->first]].place));
   }
 
   Polygon listed_corners() const {
@@ -205,6 +224,7 @@ class Vs3Reader {
     if (any) return;
     model_.base.clear();
     model_.combined.clear();
+    model_.cover.clear();
   }
 
   void check_base(size_t s) {
@@ -214,6 +234,23 @@ class Vs3Reader {
     place_ = wanted_[s].place;
     for (const dvec3& corner : model_.surfaces[s])
       if (std::abs(plane.height(corner)) > 1e-5 * radius(base)) fail("it does not lie in its base surface");
+    if (model_.cover[s] != Cover::kNothing) check_cover(s, base, plane.normal);
+  }
+
+  void check_cover(size_t s, const Polygon& base, const dvec3& normal) const {
+    if (model_.cover[model_.base[s]] != Cover::kNothing)
+      fail("its base surface is itself a mask or null surface");
+    if (glm::dot(plane_of(model_.surfaces[s]).normal, normal) < 0.999)  // it has been turned
+      fail("a mask or null surface has to face its base surface");
+    // View3D's surfaces are convex.
+    for (size_t k = 0; k < base.size(); ++k) {
+      const dvec3 inwards = glm::normalize(glm::cross(normal, base[(k + 1) % base.size()] - base[k]));
+      for (const dvec3& corner : model_.surfaces[s])
+        if (glm::dot(corner - base[k], inwards) < -1e-5 * radius(base))
+          fail("it does not lie within its base surface");
+    }
+    if (model_.cover[s] == Cover::kNull && area(model_.surfaces[s]) > (1 - 1e-6) * area(base))
+      fail("it leaves nothing of its base surface");
   }
 
   struct Wanted {

@@ -14,8 +14,17 @@ struct ShapePair {
   std::vector<Polygon> occluders;
 };
 
+/// What a surface that lies on its base, face to face, does to it (View3D's user manual, "Surface Types").
+enum class Cover : uint8_t {
+  kNothing,  ///< it is no such surface
+  kMask,     ///< covers that part of the base, which sees nothing but the mask, and the mask nothing but it
+  kNull,     ///< takes that part of the base away, and is none of the model's surfaces itself
+};
+
 /// Polygons that exchange with their fronts and block with both sides. `base`, `combined`: numbers of
-/// surfaces as View3D has them, kNone for most; empty for none at all.
+/// surfaces as View3D has them, kNone for most; `cover`: what each does to its base. Masks and null surfaces
+/// are held as the part of the base that they cover: they face as it does, and not as in the file. All three
+/// are empty for none at all.
 struct PolygonModel {
   static constexpr uint32_t kNone = 0xffffffffu;
 
@@ -24,6 +33,7 @@ struct PolygonModel {
   std::vector<Polygon> surfaces;
   std::vector<Polygon> occluders;  ///< only block
   std::vector<uint32_t> base, combined;
+  std::vector<Cover> cover;
 };
 
 struct FormFactorInput {

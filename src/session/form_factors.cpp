@@ -160,7 +160,7 @@ class FormFactors {
       answer.matrix = *std::move(matrix);
     } else {
       std::vector<uint32_t> kept;
-      answer.matrix = fold_surfaces(*matrix, {model.base, model.combined}, kept);
+      answer.matrix = fold_surfaces(*matrix, {model.base, model.combined, model.cover}, kept);
       answer.names.clear();
       for (const uint32_t surface : kept) answer.names.push_back(model.names[surface]);
     }

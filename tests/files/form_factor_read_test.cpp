@@ -51,6 +51,18 @@ TEST(Vs3, BasesAndCombinedSurfacesMayComeLater) {
   EXPECT_EQ(model.combined, (std::vector<uint32_t>{PolygonModel::kNone, 2, PolygonModel::kNone}));
 }
 
+TEST(Vs3, MasksAndNullSurfacesArePartsOfTheirBases) {
+  const PolygonModel model =
+      vs3(kVertices +
+          "V 5 .2 .2 0\nV 6 .4 .2 0\nV 7 .4 .4 0\nM 1 7 6 5 0 2 0 .9 rug\nS 2 1 2 3 4 0 0 .9 floor\n"
+          "n 3 4 3 1 0 2 0 .9 hole\n")
+          .models.at(0);
+  EXPECT_EQ(model.cover, (std::vector<Cover>{Cover::kMask, Cover::kNothing, Cover::kNull}));
+  EXPECT_EQ(model.base, (std::vector<uint32_t>{1, PolygonModel::kNone, 1}));
+  EXPECT_EQ(model.names[0], "rug");
+  for (const Polygon& polygon : model.surfaces) EXPECT_GT(area_vector(polygon).z, 0);
+}
+
 TEST(Vs3, RectanglesByOriginAzimuthAndTilt) {
   // A wall that faces south (azimuth 180), a floor and a ceiling over the same square.
   const PolygonModel model =
@@ -71,7 +83,16 @@ TEST(Vs3, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_THAT(vs3_error("F 2\n"), HasSubstr("line 1: geometry format \"2\""));
   EXPECT_THAT(vs3_error(kVertices), HasSubstr("no surfaces"));
   EXPECT_THAT(vs3_error(kVertices + "X 1\n" + surface), HasSubstr("line 8: record \"X\""));
-  EXPECT_THAT(vs3_error(kVertices + "M 1 1 2 3 4 0 0 .9\n"), HasSubstr("masks"));
+  const std::string square = "V 5 .2 .2 0\nV 6 .4 .2 0\nV 7 .4 .4 0\nV 8 .2 .4 0\nV 9 2 .4 0\n" + surface;
+  EXPECT_THAT(vs3_error(kVertices + "M 1 1 2 3 4 0 0 .9\n"), HasSubstr("line 8: surface 1: a mask or null"));
+  EXPECT_THAT(vs3_error(kVertices + square + "N 2 5 6 7 8 1 0 .9\n"), HasSubstr("has to face its base"));
+  EXPECT_THAT(vs3_error(kVertices + square + "M 2 8 7 6 5 1 1 .9\n"), HasSubstr("cannot be combined"));
+  EXPECT_THAT(vs3_error(kVertices + square + "M 2 8 7 9 5 1 0 .9\n"), HasSubstr("not lie within its base"));
+  EXPECT_THAT(vs3_error(kVertices + square + "N 2 4 3 2 1 1 0 .9\n"), HasSubstr("leaves nothing"));
+  EXPECT_THAT(vs3_error(kVertices + square + "M 2 8 7 6 5 1 0 .9\nM 3 7 6 5 0 2 0 .9\n"),
+              HasSubstr("line 15: surface 3: its base surface is itself a mask"));
+  EXPECT_THAT(vs3_error(kVertices + square + "M 2 8 7 6 5 1 0 .9\nN 3 8 7 6 5 1 0 .9\n"),
+              HasSubstr("surface 3: it lies where the surface of line 14: surface 2"));
   EXPECT_THAT(vs3_error(kVertices + "V 4 0 0 0\n"), HasSubstr("vertex 4 is there twice"));
   EXPECT_THAT(vs3_error(kVertices + "V 5 0 0 nan\n"), HasSubstr("\"nan\" is not a number"));
   EXPECT_THAT(vs3_error(kVertices + "V 5 0 0\n"), HasSubstr("has 4 words, at least 5"));

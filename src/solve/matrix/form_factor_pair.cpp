@@ -86,6 +86,8 @@ const char* method_name(FormFactorMethod method) {
       return "rays";
     case FormFactorMethod::kHemicube:
       return "hemicube";
+    case FormFactorMethod::kCovered:
+      return "covered";
   }
   return "";
 }

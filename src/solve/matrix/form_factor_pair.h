@@ -17,6 +17,7 @@ enum class FormFactorMethod : uint8_t {
   kShape,         ///< quadrature of closed forms over a curved shape
   kRays,          ///< sample points and rays
   kHemicube,      ///< item buffers at sample points
+  kCovered,       ///< a mask and what it covers, face to face: all of it
 };
 const char* method_name(FormFactorMethod method);
 

@@ -37,7 +37,8 @@ void add_form_factors(CLI::App& app, FormFactorCommand& command) {
       ->type_name("M")
       ->check(CLI::IsMember(kMethods).description(""));
   verb->add_option("--tolerance", command.tolerance,
-                   "relative, where something stands between (1e-5 for pairs, 1e-4 in models)")
+                   "relative, where something stands between (1e-5 for pairs, 1e-4 in models; of pairs with\n"
+                   "curved shapes two standard errors, 1e-4, by at most sixteen million rays)")
       ->type_name("E")
       ->check(CLI::Range(1e-12, 0.5).description(""));
   verb->add_option("--rays", options.rays, "a pair, with --method rays, 1 to 64 (16)")

@@ -81,6 +81,15 @@ std::string json_pair(const std::string& id, const std::string& from, const std:
                      quoted(id), quoted(from), quoted(to), value, method_name(method), error);
 }
 
+// With the standard error of what rays have found.
+std::string json_pair(const PairAnswer& pair) {
+  const FormFactor& f = pair.factor;
+  std::string text = json_pair(pair.id, pair.from, pair.to, f.value, f.method, f.error_bound);
+  if (f.method != FormFactorMethod::kRays) return text;
+  text.pop_back();
+  return text + fmt::format(",\"standard_error\":{:.3g}}}", f.standard_error);
+}
+
 nlohmann::json summary(const ModelAnswer& model) {
   const ClosureCheck check = check_closure(model.matrix);
   nlohmann::json j;
@@ -148,9 +157,13 @@ ClosureCheck check_closure(const FormFactorMatrix& matrix) {
 std::string describe(const std::vector<PairAnswer>& pairs, const std::vector<ModelAnswer>& models,
                      size_t most) {
   std::string text;
-  for (const PairAnswer& pair : pairs)
-    text += fmt::format("{:<28} {:.15f} ± {:.1e} {}\n", pair.id, pair.factor.value, pair.factor.error_bound,
+  for (const PairAnswer& pair : pairs) {
+    text += fmt::format("{:<28} {:.15f} ± {:.1e} {}", pair.id, pair.factor.value, pair.factor.error_bound,
                         method_name(pair.factor.method));
+    if (pair.factor.method == FormFactorMethod::kRays)
+      text += fmt::format(", standard error {:.1e}", pair.factor.standard_error);
+    text += '\n';
+  }
   for (const ModelAnswer& model : models) text += describe_model(model, most);
   return text;
 }
@@ -180,8 +193,7 @@ Status write_form_factor_json(const std::string& file, const std::vector<PairAns
       between = ",\n";
     };
     out.add("{\"pairs\":[\n");
-    for (const PairAnswer& p : pairs)
-      pair(json_pair(p.id, p.from, p.to, p.factor.value, p.factor.method, p.factor.error_bound));
+    for (const PairAnswer& p : pairs) pair(json_pair(p));
     nlohmann::json sums = nlohmann::json::array(), cases = nlohmann::json::array();
     for (const ModelAnswer& model : models) {
       const auto rows = rows_of(model.matrix);

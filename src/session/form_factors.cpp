@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "files/form_factor_read.h"
@@ -83,11 +84,13 @@ class FormFactors {
 
   Status answer_pairs(const FormFactorInput& input) {
     CubatureLimits limits;
-    if (options_.tolerance) limits.relative = *options_.tolerance;
+    ShapeRayLimits ray_limits;
+    if (options_.tolerance) limits.relative = ray_limits.relative = *options_.tolerance;
+    ray_limits.seed = static_cast<uint32_t>(options_.seed);
     for (const ShapePair& pair : input.pairs) {
       if (stop_asked()) return stopped();
       tell(static_cast<double>(pairs_.size()) / static_cast<double>(input.pairs.size()));
-      Result<FormFactor> factor = shape_form_factor(pair.from, pair.to, pair.occluders, limits);
+      Result<FormFactor> factor = shape_form_factor(pair.from, pair.to, pair.occluders, limits, ray_limits);
       // One that cannot be told keeps no other from being told.
       if (!factor) {
         unanswered_ = factor.error();
@@ -96,10 +99,19 @@ class FormFactors {
         result_.warnings.push_back(fmt::format("{} has no answer", unanswered_.line()));
         continue;
       }
+      warn_of_rays(pair, *factor, ray_limits);
       pairs_.push_back(
           {pair.id, std::visit(ShapeName(), pair.from), std::visit(ShapeName(), pair.to), *factor});
     }
     return Nothing{};
+  }
+
+  void warn_of_rays(const ShapePair& pair, const FormFactor& factor, const ShapeRayLimits& limits) {
+    if (factor.method != FormFactorMethod::kRays || factor.value == 0) return;
+    if (factor.error_bound > 1.01 * limits.relative * factor.value)
+      result_.warnings.push_back(fmt::format(
+          "case {}: {} million rays leave an error of {:.1e} of the value, more than the tolerance {:.1e}",
+          pair.id, limits.most_rays >> 20, factor.error_bound / factor.value, limits.relative));
   }
 
   MatrixOptions matrix_options() const {
@@ -145,8 +157,22 @@ class FormFactors {
     return matrix;
   }
 
+  // A ray of an item buffer meets one surface of those in a plane, whichever it happens to be.
+  void warn_of_bases(const PolygonModel& model) {
+    const MatrixMethod method = matrix_options().method;
+    const bool by_rows = method == MatrixMethod::kHemicube || method == MatrixMethod::kCubicTetrahedron ||
+                         method == MatrixMethod::kSinglePlane;
+    const auto lies_in_another = [](uint32_t base) { return base != PolygonModel::kNone; };
+    if (by_rows && std::any_of(model.base.begin(), model.base.end(), lies_in_another))
+      result_.warnings.push_back(fmt::format(
+          "{}: item buffers do not tell a surface from the base that it lies in, and what they say of "
+          "these is wrong: use --method exact or rays",
+          model.id.empty() ? options_.input : model.id));
+  }
+
   Status answer_model(const PolygonModel& model) {
     const auto begin = Clock::now();
+    warn_of_bases(model);
     Result<FormFactorMatrix> matrix = build({model.surfaces, model.occluders});
     if (!matrix) {
       Error error = matrix.error();

@@ -164,6 +164,45 @@ class CliTest(unittest.TestCase):
         self.assertEqual(self.run_it("formfactors", "cases.json", "--case", "m", "--npz", "f.npz").returncode, 0)
         self.assertEqual(self.path("f.npz").read_bytes()[:2], b"PK")
 
+    def test_formfactors_of_curved_shapes_past_occluders(self):
+        disk = {"type": "disk", "centre": [0, 0, 0], "normal": [0, 0, 1], "radius": 1}
+        other = {"type": "disk", "centre": [0, 0, 1], "normal": [0, 0, -1], "radius": 1}
+        half = {"vertices": [[-9, 0, 0.5], [9, 0, 0.5], [9, 9, 0.5], [-9, 9, 0.5]]}
+        self.path("discs.json").write_text(json.dumps({"from": disk, "to": other, "occluders": [half]}))
+        done = self.run_it("formfactors", "discs.json", "--tolerance", "1e-3", "--json", "f.json")
+        self.assertEqual((done.returncode, "warning" in done.stderr), (0, False), done.stderr)
+        self.assertRegex(done.stdout, r"± \S+ rays, standard error \S+")
+        answer = json.loads(self.path("f.json").read_text())["pairs"][0]
+        self.assertEqual(answer["method"], "rays")
+        half_of_all = (3 - 5 ** 0.5) / 4  # Howell C-41, and reflection
+        self.assertAlmostEqual(answer["value"], half_of_all, delta=4 * answer["standard_error"])
+        self.assertLessEqual(answer["error_bound"], 1e-3 * answer["value"])
+        hard = self.run_it("formfactors", "discs.json", "--tolerance", "1e-9")
+        self.assertIn("more than the tolerance 1.0e-09", hard.stderr)
+
+    def test_formfactors_of_view3d_masks(self):
+        corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        corners += [(.4, .4, 0), (.6, .4, 0), (.6, .6, 0), (.4, .6, 0)]
+        text = "F 3\n" + "".join("V %d %g %g %g\n" % (i + 1, *c) for i, c in enumerate(corners))
+        text += "S 1 1 2 3 4 0 0 .9 bottom\nS 2 8 7 6 5 0 0 .9 top\n"
+        self.path("mask.vs3").write_text(text + "M 3 12 11 10 9 1 0 .9 rug\nEnd\n")
+        self.path("null.vs3").write_text(text + "N 3 12 11 10 9 1 0 .9 hole\nEnd\n")
+        values = {}
+        for name in ("mask", "null"):
+            self.assertEqual(self.run_it("formfactors", name + ".vs3", "--json", "f.json").returncode, 0)
+            for pair in json.loads(self.path("f.json").read_text())["pairs"]:
+                values[name, pair["from"], pair["to"]] = pair["value"]
+        self.assertEqual(len(values), 6)
+        whole = 0.199824895698387383  # Howell C-11
+        self.assertEqual(values["mask", "rug", "bottom"], 1)
+        self.assertAlmostEqual(values["mask", "bottom", "rug"], 0.04, places=12)
+        seen = values["mask", "bottom", "top"]
+        self.assertTrue(0.8 * whole < seen < 0.96 * whole)  # what lies in the middle sees more than the mean
+        self.assertAlmostEqual(values["null", "bottom", "top"], seen / 0.96, places=12)
+        self.assertAlmostEqual(values["null", "top", "bottom"], seen, places=12)
+        self.assertIn("item buffers", self.run_it("formfactors", "mask.vs3", "--method", "hemicube", "--resolution",
+                                                  "16").stderr)
+
     def test_formfactors_name_what_is_wrong(self):
         self.path("bent.json").write_text(
             '{"surfaces":[{"vertices":[[0,0,0],[1,0,0],[1,1,0.4],[0,1,0]]}]}')

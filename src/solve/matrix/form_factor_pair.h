@@ -23,8 +23,9 @@ const char* method_name(FormFactorMethod method);
 
 struct FormFactor {
   double value = 0;        ///< 0..1
-  double error_bound = 0;  ///< absolute
+  double error_bound = 0;  ///< absolute; of rays two standard errors
   FormFactorMethod method = FormFactorMethod::kFacesAway;
+  double standard_error = 0;  ///< of the value, where rays were cast
 };
 
 /// Occluders as convex polygons, and where they are.

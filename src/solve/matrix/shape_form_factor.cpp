@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "math/polygon_exchange.h"
+#include "solve/matrix/shape_rays.h"
 
 namespace goldthread {
 namespace {
@@ -31,16 +32,6 @@ struct CurvePiece {
     return turn * (-std::sin(a) * across + std::cos(a) * up);
   }
 };
-
-struct Frame {
-  dvec3 x, y;
-};
-
-Frame frame_of(const dvec3& normal) {
-  const dvec3 aside = std::abs(normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  const dvec3 x = glm::normalize(glm::cross(aside, normal));
-  return {x, glm::cross(normal, x)};
-}
 
 // The parameters in (0, 1) at which a piece crosses the plane n through x, ascending.
 std::vector<double> crossings(const CurvePiece& piece, const dvec3& x, const dvec3& n) {
@@ -101,7 +92,7 @@ Estimate curve_form_factor(const dvec3& x, const dvec3& n, std::span<const Curve
 
 Estimate to_disc(const dvec3& x, const dvec3& n, const DiscShape& disc) {
   if (glm::dot(x - disc.centre, disc.normal) <= 0) return {};
-  const Frame frame = frame_of(disc.normal);
+  const PlaneFrame frame = plane_frame(disc.normal);
   const CurvePiece circle{disc.centre, disc.radius * frame.x, disc.radius * frame.y, 0, 2 * kPiExact};
   return curve_form_factor(x, n, {&circle, 1});
 }
@@ -163,7 +154,6 @@ Result<PointFactor> point_factor(const Shape& to, std::span<const Polygon> occlu
       const FormFactor f = point_to_polygon(x, n, *polygon, occluders);
       return Estimate{f.value, f.error_bound};
     });
-  if (!occluders.empty()) return unknown("occluders are known between points and polygons only");
   if (const auto* disc = std::get_if<DiscShape>(&to))
     return PointFactor([disc](const dvec3& x, const dvec3& n) { return to_disc(x, n, *disc); });
   if (const auto* cap = std::get_if<CapShape>(&to))
@@ -178,59 +168,12 @@ Result<PointFactor> point_factor(const Shape& to, std::span<const Polygon> occlu
   return unknown("the inside of a cylinder is known as a source only");
 }
 
-// A source as a map from the unit square, with the area that a point of it stands for.
-struct Place {
-  dvec3 position, normal;
-  double area;
-};
-using Surface = std::function<Place(double u, double v)>;
-
-Surface surface_of(const DiscShape& disc) {
-  const Frame frame = frame_of(disc.normal);
-  return [disc, frame](double u, double v) {
-    const double a = 2 * kPiExact * v;
-    const dvec3 out = std::cos(a) * frame.x + std::sin(a) * frame.y;
-    return Place{disc.centre + u * disc.radius * out, disc.normal,
-                 2 * kPiExact * u * disc.radius * disc.radius};
-  };
-}
-
-Surface surface_of(const SphereShape& sphere) {
-  return [sphere](double u, double v) {
-    const double z = 2 * u - 1, r = std::sqrt(std::max(0.0, 1 - z * z)), a = 2 * kPiExact * v;
-    const dvec3 out(r * std::cos(a), r * std::sin(a), z);
-    return Place{sphere.centre + sphere.radius * out, sphere.inside ? -out : out,
-                 4 * kPiExact * sphere.radius * sphere.radius};
-  };
-}
-
-Surface surface_of(const CylinderShape& cylinder) {
-  const Frame frame = frame_of(cylinder.axis);
-  return [cylinder, frame](double u, double v) {
-    const double a = 2 * kPiExact * v;
-    const dvec3 out = std::cos(a) * frame.x + std::sin(a) * frame.y;
-    return Place{cylinder.base + cylinder.radius * out + u * cylinder.height * cylinder.axis,
-                 cylinder.inside ? -out : out, 2 * kPiExact * cylinder.radius * cylinder.height};
-  };
-}
-
-Surface surface_of(const CapShape& cap) {
-  const Frame frame = frame_of(cap.axis);
-  return [cap, frame](double u, double v) {
-    const double rise = 1 - std::cos(cap.half_angle), z = 1 - u * rise,
-                 r = std::sqrt(std::max(0.0, 1 - z * z));
-    const double a = 2 * kPiExact * v;
-    const dvec3 out = r * (std::cos(a) * frame.x + std::sin(a) * frame.y) + z * cap.axis;
-    return Place{cap.centre + cap.radius * out, -out, 2 * kPiExact * cap.radius * cap.radius * rise};
-  };
-}
-
-Estimate integrate_surface(const Surface& surface, const PointFactor& factor, double tolerance) {
+Estimate integrate_surface(const ShapeSurface& surface, const PointFactor& factor, double tolerance) {
   double inner_error = 0;
   const auto row = [&](double u) {
     const Estimate sum = integrate(
         [&](double v) {
-          const Place place = surface(u, v);
+          const SurfacePlace place = surface(u, v);
           return place.area * factor(place.position, place.normal).value;
         },
         0, 1, 0.3 * tolerance, 12);
@@ -242,21 +185,14 @@ Estimate integrate_surface(const Surface& surface, const PointFactor& factor, do
   return sum;
 }
 
-struct AreaOf {
-  double operator()(const PointShape&) const { return 0; }
-  double operator()(const Polygon& p) const { return area(p); }
-  double operator()(const DiscShape& d) const { return kPiExact * d.radius * d.radius; }
-  double operator()(const SphereShape& s) const { return 4 * kPiExact * s.radius * s.radius; }
-  double operator()(const CylinderShape& c) const { return 2 * kPiExact * c.radius * c.height; }
-  double operator()(const CapShape& c) const {
-    return 2 * kPiExact * c.radius * c.radius * (1 - std::cos(c.half_angle));
-  }
-};
-
 bool is_convex_body(const Shape& shape) {
   const auto* sphere = std::get_if<SphereShape>(&shape);
   const auto* cylinder = std::get_if<CylinderShape>(&shape);
   return (sphere && !sphere->inside) || (cylinder && !cylinder->inside);
+}
+
+bool is_flat(const Shape& shape) {
+  return std::holds_alternative<PointShape>(shape) || std::holds_alternative<Polygon>(shape);
 }
 
 bool is_cylinder_inside(const Shape& shape) {
@@ -282,25 +218,20 @@ Result<FormFactor> mean_over(const Shape& from, const Shape& to, const CubatureL
     return FormFactor{std::clamp(exchange.value / whole, 0.0, 1.0), exchange.error / whole,
                       FormFactorMethod::kShape};
   }
-  Surface surface;
-  if (const auto* disc = std::get_if<DiscShape>(&from)) surface = surface_of(*disc);
-  if (const auto* sphere = std::get_if<SphereShape>(&from)) surface = surface_of(*sphere);
-  if (const auto* cylinder = std::get_if<CylinderShape>(&from)) surface = surface_of(*cylinder);
-  if (const auto* cap = std::get_if<CapShape>(&from)) surface = surface_of(*cap);
-  const Estimate exchange = integrate_surface(surface, *factor, 1e-3 * limits.relative * whole);
+  const Estimate exchange = integrate_surface(surface_of(from), *factor, 1e-3 * limits.relative * whole);
   return FormFactor{std::clamp(exchange.value / whole, 0.0, 1.0), exchange.error / whole + 1e-14,
                     FormFactorMethod::kShape};
 }
 
 }  // namespace
 
-double shape_area(const Shape& shape) {
-  return std::visit(AreaOf(), shape);
-}
-
 Result<FormFactor> shape_form_factor(const Shape& from, const Shape& to, std::span<const Polygon> occluders,
-                                     const CubatureLimits& limits) {
+                                     const CubatureLimits& limits, const ShapeRayLimits& ray_limits) {
   if (std::holds_alternative<PointShape>(to)) return unknown("nothing can be sent to a point");
+  if (!occluders.empty() && !(is_flat(from) && is_flat(to))) {
+    const Result<FormFactor> open = shape_form_factor(from, to, {}, limits);
+    return open && open->value > 0 ? seen_by_rays(*open, from, to, occluders, ray_limits) : open;
+  }
   if (const auto* point = std::get_if<PointShape>(&from)) {
     const Result<PointFactor> factor = point_factor(to, occluders);
     if (!factor) return factor.error();
@@ -310,7 +241,6 @@ Result<FormFactor> shape_form_factor(const Shape& from, const Shape& to, std::sp
   }
   const auto *first = std::get_if<Polygon>(&from), *second = std::get_if<Polygon>(&to);
   if (first && second) return polygon_form_factor(*first, *second, occluders, limits);
-  if (!occluders.empty()) return unknown("occluders are known between points and polygons only");
   if (is_cylinder_inside(from) && is_cylinder_inside(to)) {
     const auto &tube = std::get<CylinderShape>(from), &other = std::get<CylinderShape>(to);
     if (tube.base != other.base || tube.axis != other.axis || tube.radius != other.radius ||

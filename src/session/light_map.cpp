@@ -84,21 +84,23 @@ Json describe_light_maps(const std::vector<LightMap>& maps, const Scene& scene) 
 
 std::vector<std::string> texel_warnings(const TexelProblems& problems, const TexelLayout& layout) {
   std::vector<std::string> lines;
+  const std::string of_all = fmt::format(" of {}", counted(problems.parts, "lit primitive"));
   if (problems.without_uv > 0)
-    lines.push_back(fmt::format("{} of {} have no {} and no light map", problems.without_uv,
-                                counted(problems.parts, "lit primitive"), coordinates(layout)));
+    lines.push_back(
+        fmt::format("no {} and no light map: {}{}", coordinates(layout), problems.without_uv, of_all));
   if (problems.without_texel > 0)
-    lines.push_back(fmt::format("{} of {} hold no texel's centre and have no light map: a larger --texels",
-                                problems.without_texel, counted(problems.parts, "lit primitive")));
+    lines.push_back(
+        fmt::format("no texel's centre in any triangle, and no light map: {}{}; try a larger --texels",
+                    problems.without_texel, of_all));
   if (problems.overlapping > 0)
-    lines.push_back(fmt::format(
-        "{} in texture coordinates lie on others, wholly or partly: there the first in the file is measured",
-        counted(problems.overlapping, "triangle")));
+    lines.push_back(
+        fmt::format("texture coordinates on top of others, where the first in the file is measured: {}",
+                    counted(problems.overlapping, "triangle")));
   if (problems.outside > 0)
-    lines.push_back(fmt::format("{} in texture coordinates reach beyond 0..1, where there are no texels",
+    lines.push_back(fmt::format("texture coordinates beyond 0..1, where there are no texels: {}",
                                 counted(problems.outside, "triangle")));
   if (problems.without_uv_area > 0)
-    lines.push_back(fmt::format("{} have no area in texture coordinates, and no texels",
+    lines.push_back(fmt::format("no area in texture coordinates, and no texels: {}",
                                 counted(problems.without_uv_area, "triangle")));
   return lines;
 }
@@ -111,12 +113,13 @@ Error no_texels(const TexelReceivers& texels, const TexelLayout& layout, const s
   if (problems.without_uv == problems.parts)
     return {ErrorCode::kBadInput, fmt::format("no lit primitive has {}", coordinates(layout)), scene_file, "",
             layout.uv ? "leave --uv out, or unwrap the scene in the program that made it" : kUnwrapCure};
-  return {ErrorCode::kBadInput,
-          fmt::format("no texel's centre lies in a triangle: of {}, {} have no {}, {} triangles have no area "
-                      "there and {} reach beyond 0..1",
-                      counted(problems.parts, "lit primitive"), problems.without_uv, coordinates(layout),
-                      problems.without_uv_area, problems.outside),
-          scene_file, "", "give a larger --texels, or unwrap the scene within 0..1"};
+  return {
+      ErrorCode::kBadInput,
+      fmt::format(
+          "no texel's centre lies in a triangle: {}, without {}: {}; {} without area there, {} beyond 0..1",
+          counted(problems.parts, "lit primitive"), coordinates(layout), problems.without_uv,
+          counted(problems.without_uv_area, "triangle"), problems.outside),
+      scene_file, "", "give a larger --texels, or unwrap the scene within 0..1"};
 }
 
 }  // namespace goldthread

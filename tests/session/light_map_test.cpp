@@ -49,7 +49,7 @@ TEST(LightMap, HoldsWhatTheListHolds) {
   const ReferenceResult result = measured(options);
   EXPECT_THAT(result.written, ElementsAre(options.pictures[0], options.json_file));
   EXPECT_THAT(result.warnings,
-              ElementsAre(HasSubstr("1 of 2 lit primitives have no texture coordinates and no light map")));
+              ElementsAre(HasSubstr("no texture coordinates and no light map: 1 of 2 lit primitives")));
   const Json json = Json::parse(result.json);
   ASSERT_EQ(json["points"].size(), 24u);  // the left half of the map
   EXPECT_EQ(json["light_maps"].size(), 1u);
@@ -165,8 +165,8 @@ TEST(LightMap, OverlapsAndWhatLiesOutsideAreSaid) {
         b.accessor<float>({0, 0, 2, 0, 2, 2, 2, 0.5f}, "VEC2", kFloat);
   const ReferenceResult result = measured(texels_of(folder.write("a.gltf", b.text()), 8, 8));
   EXPECT_THAT(result.warnings,
-              ElementsAre(HasSubstr("2 triangles in texture coordinates lie on others"),
-                          HasSubstr("4 triangles in texture coordinates reach beyond 0..1")));
+              ElementsAre(HasSubstr("on top of others, where the first in the file is measured: 2 triangles"),
+                          HasSubstr("beyond 0..1, where there are no texels: 4 triangles")));
 }
 
 /// The error, and that nothing is left behind.
@@ -201,7 +201,7 @@ TEST(LightMapBadInput, ScenesWithoutTexels) {
       collapsed.accessor<float>({0, 0, 0, 0, 0, 0, 0, 0}, "VEC2", kFloat);
   options.input = folder.write("collapsed.gltf", collapsed.text());
   options.texels->uv.reset();
-  expect_error(options, ErrorCode::kBadInput, "2 triangles have no area");
+  expect_error(options, ErrorCode::kBadInput, "2 triangles without area");
 }
 
 TEST(LightMapBadInput, WishesThatMakeNoSense) {

@@ -153,6 +153,19 @@ TEST(ShapeRays, ATubeWithAWall) {
               4 * (to_tube.standard_error + down.standard_error + up.standard_error) + 1e-4);
 }
 
+// The tolerance is met where the open exchange comes from cubature, too, whose error counts.
+TEST(ShapeRays, AToleranceHoldsForAPlateAndASphere) {
+  const Polygon plate = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
+                half = {{0, -9, 1}, {9, -9, 1}, {9, 9, 1}, {0, 9, 1}};
+  const SphereShape ball{{0, 0, 2}, 0.5};
+  for (const double tolerance : {1e-2, 1e-3}) {
+    const Result<FormFactor> f = shape_form_factor(plate, ball, std::vector<Polygon>{half},
+                                                   {.relative = tolerance}, {.relative = tolerance});
+    ASSERT_TRUE(f);
+    expect_factor(*f, shape_form_factor(plate, ball, {})->value / 2, tolerance);
+  }
+}
+
 TEST(ShapeRays, ErrorsAreHonestAndSeedsAndThreadsAsPromised) {
   const DiscShape below{{0, 0, 0}, {0, 0, 1}, 0.5}, above{{0, 0, 2}, {0, 0, -1}, 1.5};
   const std::vector<Polygon> between = {square(0.35, 1)};

@@ -229,7 +229,10 @@ Result<FormFactor> shape_form_factor(const Shape& from, const Shape& to, std::sp
                                      const CubatureLimits& limits, const ShapeRayLimits& ray_limits) {
   if (std::holds_alternative<PointShape>(to)) return unknown("nothing can be sent to a point");
   if (!occluders.empty() && !(is_flat(from) && is_flat(to))) {
-    const Result<FormFactor> open = shape_form_factor(from, to, {}, limits);
+    // Most of the tolerance is for the rays.
+    CubatureLimits open_limits = limits;
+    open_limits.relative = std::min(limits.relative, 0.1 * ray_limits.relative);
+    const Result<FormFactor> open = shape_form_factor(from, to, {}, open_limits);
     return open && open->value > 0 ? seen_by_rays(*open, from, to, occluders, ray_limits) : open;
   }
   if (const auto* point = std::get_if<PointShape>(&from)) {

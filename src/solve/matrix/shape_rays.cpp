@@ -229,6 +229,11 @@ FormFactor seen_by_rays(const FormFactor& open, const Shape& from, const Shape& 
   const bool turned = starts_at_second(from, to);
   const Rays rays(turned ? to : from, turned ? from : to, occluders);
   std::array<Rays::Sums, kSequences> sums{};
+  // What is hidden from all rays is held against all that there might be.
+  const double open_error = open.error_bound / open.value;
+  const auto wanted = [&](const Share& s) {
+    return s.mean > 0 ? (limits.relative - open_error) * s.mean : limits.relative;
+  };
   Share share;
   uint64_t done = 0;
   do {
@@ -238,8 +243,7 @@ FormFactor seen_by_rays(const FormFactor& open, const Shape& from, const Shape& 
     });
     done = next;
     share = share_of(sums);
-  } while (share.doubt > limits.relative * (share.mean > 0 ? share.mean : 1) &&
-           2 * done * kSequences <= limits.most_rays);
+  } while (share.doubt > wanted(share) && 2 * done * kSequences <= limits.most_rays);
   FormFactor seen;
   seen.value = open.value * share.mean;
   seen.standard_error = open.value * share.standard_error;

@@ -120,12 +120,14 @@ class Vs3Reader {
     const std::string start = place_;
     Polygon corners;
     if (!by_origin_) corners = listed_corners();
-    const int64_t base = whole(after), combined = whole(after + 1);
+    // Of an obstruction View3D reads no more than its place.
+    const int64_t base = record == 'O' ? 0 : whole(after), combined = record == 'O' ? 0 : whole(after + 1);
     const std::string name = words_.size() > after + 3 ? words_[after + 3] : fmt::format("surface {}", id);
     if (by_origin_) corners = placed_corners();  // on lines of their own
     place_ = fmt::format("{}: surface {}", start, id);
     if (const std::optional<std::string> problem = polygon_problem(corners)) fail(*problem);
     if (record == 'O') {
+      obstructions_.emplace(id, model_.occluders.size());
       model_.occluders.push_back(std::move(corners));
       return;
     }
@@ -207,8 +209,10 @@ class Vs3Reader {
 
   void resolve() {
     bool any = false;
-    for (const Wanted& wanted : wanted_) {
-      model_.base.push_back(surface_number(wanted.base, wanted.place, "base"));
+    for (size_t s = 0; s < wanted_.size(); ++s) {
+      const Wanted& wanted = wanted_[s];
+      model_.base.push_back(lies_on_obstruction(s) ? PolygonModel::kNone
+                                                   : surface_number(wanted.base, wanted.place, "base"));
       model_.combined.push_back(surface_number(wanted.combined, wanted.place, "combined"));
       any = any || wanted.base != 0 || wanted.combined != 0;
     }
@@ -227,13 +231,27 @@ class Vs3Reader {
     model_.cover.clear();
   }
 
+  // What only blocks has no exchange to be taken from, so that it is no base to what follows.
+  bool lies_on_obstruction(size_t s) {
+    const auto found = obstructions_.find(wanted_[s].base);
+    if (found == obstructions_.end() || numbers_.count(wanted_[s].base) > 0) return false;
+    check_plane(s, model_.occluders[found->second]);
+    if (model_.cover[s] != Cover::kNothing) fail("a mask or null surface cannot lie on an obstruction");
+    return model_.on_occluders = true;
+  }
+
+  void check_plane(size_t s, const Polygon& base) {
+    place_ = wanted_[s].place;
+    for (const dvec3& corner : model_.surfaces[s])
+      if (std::abs(plane_of(base).height(corner)) > 1e-5 * radius(base))
+        fail("it does not lie in its base surface");
+  }
+
   void check_base(size_t s) {
     if (model_.base[s] == PolygonModel::kNone) return;
     const Polygon& base = model_.surfaces[model_.base[s]];
     const Plane plane = plane_of(base);
-    place_ = wanted_[s].place;
-    for (const dvec3& corner : model_.surfaces[s])
-      if (std::abs(plane.height(corner)) > 1e-5 * radius(base)) fail("it does not lie in its base surface");
+    check_plane(s, base);
     if (model_.cover[s] != Cover::kNothing) check_cover(s, base, plane.normal);
   }
 
@@ -266,6 +284,7 @@ class Vs3Reader {
   bool by_origin_ = false;
   std::map<int64_t, dvec3> vertices_;
   std::map<int64_t, uint32_t> numbers_;
+  std::map<int64_t, size_t> obstructions_;  // number in the file, and as an occluder
   std::vector<Wanted> wanted_;
   PolygonModel model_;
 };

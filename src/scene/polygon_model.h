@@ -34,6 +34,7 @@ struct PolygonModel {
   std::vector<Polygon> occluders;  ///< only block
   std::vector<uint32_t> base, combined;
   std::vector<Cover> cover;
+  bool on_occluders = false;  ///< some surface lies on an occluder, which takes nothing from it
 };
 
 struct FormFactorInput {

@@ -163,7 +163,7 @@ class FormFactors {
     const bool by_rows = method == MatrixMethod::kHemicube || method == MatrixMethod::kCubicTetrahedron ||
                          method == MatrixMethod::kSinglePlane;
     const auto lies_in_another = [](uint32_t base) { return base != PolygonModel::kNone; };
-    if (by_rows && std::any_of(model.base.begin(), model.base.end(), lies_in_another))
+    if (by_rows && (model.on_occluders || std::any_of(model.base.begin(), model.base.end(), lies_in_another)))
       result_.warnings.push_back(fmt::format(
           "{}: item buffers do not tell a surface from the base that it lies in, and what they say of "
           "these is wrong: use --method exact or rays",

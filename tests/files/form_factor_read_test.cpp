@@ -63,6 +63,19 @@ TEST(Vs3, MasksAndNullSurfacesArePartsOfTheirBases) {
   for (const Polygon& polygon : model.surfaces) EXPECT_GT(area_vector(polygon).z, 0);
 }
 
+TEST(Vs3, ObstructionsMayCarrySurfaces) {
+  const std::string small = "V 5 .2 .2 0\nV 6 .4 .2 0\nV 7 .4 .4 0\n", lid = "O 9 1 2 3 4 0 0 .9 lid\n";
+  const PolygonModel model = vs3(kVertices + small + "S 1 5 6 7 0 9 0 .9 lamp\n" + lid).models.at(0);
+  EXPECT_EQ(model.base, std::vector<uint32_t>{PolygonModel::kNone});
+  EXPECT_TRUE(model.on_occluders);
+  EXPECT_EQ(model.occluders.size(), 1u);
+  EXPECT_THAT(vs3_error(kVertices + "V 5 .2 .2 1\nV 6 .4 .2 1\nV 7 .4 .4 1\nS 1 5 6 7 0 9 0 .9\n" + lid),
+              HasSubstr("surface 1: it does not lie in its base"));
+  EXPECT_THAT(vs3_error(kVertices + small + "S 1 5 6 7 0 0 0 .9\nM 2 7 6 5 0 9 0 .9\n" + lid),
+              HasSubstr("surface 2: a mask or null surface cannot lie on an obstruction"));
+  EXPECT_EQ(vs3_error(kVertices + small + "S 1 5 6 7 0 9 0 .9\nO 9 1 2 3 4\n"), "none");
+}
+
 TEST(Vs3, RectanglesByOriginAzimuthAndTilt) {
   // A wall that faces south (azimuth 180), a floor and a ceiling over the same square.
   const PolygonModel model =

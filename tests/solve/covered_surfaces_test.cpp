@@ -139,6 +139,22 @@ TEST(CoveredSurfaces, MasksOnBothSides) {
   EXPECT_NEAR(exchange_of(both, 0, 1), exchange_of(folded(half, of_half, MatrixMethod::kExact), 0, 1), 1e-9);
 }
 
+// An obstruction hides nothing of what lies on it, as View3D has it; what lies behind it, it does.
+TEST(CoveredSurfaces, WhatLiesOnAnObstructionIsSeen) {
+  PatchModel model;
+  model.patches = {level(0.2, 0.2, 0.4, 0.4, 0.5, true), level(0, 0, 1, 1, 1, false),
+                   level(0, 0, 1, 1, 0, true)};
+  const PatchModel open = model;
+  model.occluders = {level(0, 0, 1, 1, 0.5, true)};
+  for (const MatrixMethod method : {MatrixMethod::kExact, MatrixMethod::kRays}) {
+    const FormFactorMatrix without = folded(open, roles_of(3), method),
+                           with = folded(model, roles_of(3), method);
+    EXPECT_GT(exchange_of(with, 0, 1), 0.05);
+    EXPECT_NEAR(exchange_of(with, 0, 1), exchange_of(without, 0, 1), 1e-12);
+    EXPECT_LT(exchange_of(with, 2, 1), 0.5 * exchange_of(without, 2, 1));
+  }
+}
+
 // 64 rays a pair say exchanges to a few hundredths of themselves; what the mask takes is a fifth.
 TEST(CoveredSurfaces, RaysAgree) {
   const FormFactorMatrix exact = covered(Cover::kMask, MatrixMethod::kExact),

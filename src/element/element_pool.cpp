@@ -8,7 +8,7 @@
 
 namespace goldthread {
 
-ElementPool::ElementPool(const SurfaceSet& set) : set_(&set) {
+ElementPool::ElementPool(const SurfaceSet& set) : set_(&set), sky_(set.scene->sky) {
   leaf_meshes_.resize(set.parts.size());
   triangle_patches_.resize(set.parts.size());
   make_volumes();
@@ -93,21 +93,11 @@ void ElementPool::make_volumes() {
 
 void ElementPool::make_lights() {
   const Scene& scene = *set_->scene;
-  if (scene.sky.present()) {
-    const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    for (int octant = 0; octant < 8; ++octant) {
-      const vec3 a = (octant & 1) != 0 ? -x : x, b = (octant & 2) != 0 ? -y : y,
-                 c = (octant & 4) != 0 ? -z : z;
-      std::array<vec3, 3> corners{a, b, c};
-      if (dot(cross(a, b), c) > 0) std::swap(corners[1], corners[2]);  // counter-clockwise from inside
-      Element sky;
-      sky.kind = ElementKind::kSky;
-      sky.shape = static_cast<uint32_t>(sky_.size());
-      sky.exitance = kPi * scene.sky.radiance;
-      sky_.push_back(corners);
-      lights_.push_back(static_cast<ElementId>(elements_.size()));
-      elements_.push_back(sky);
-    }
+  for (const uint32_t cell : sky_.make_first()) {
+    Element sky;
+    fill_sky(sky, cell);
+    lights_.push_back(static_cast<ElementId>(elements_.size()));
+    elements_.push_back(sky);
   }
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     Element light;
@@ -125,8 +115,9 @@ void ElementPool::make_lights() {
 bool ElementPool::prepare_children(ElementId id) {
   const Element& element = elements_[id];
   switch (element.kind) {
-    case ElementKind::kCluster:
     case ElementKind::kSky:
+      return element.depth < 250 && sky_.divisible(element.shape);
+    case ElementKind::kCluster:
       return element.depth < 250;
     case ElementKind::kTriangle:
       return split_patch(patch_of_triangle(element.part, element.shape));
@@ -158,7 +149,8 @@ void ElementPool::expand(std::span<const ElementId> ids) {
     elements_.push_back(blank);
     elements_.push_back(blank);
     if (elements_[id].kind == ElementKind::kSky) {
-      expand_sky(id);
+      const uint32_t half = sky_.split(elements_[id].shape);
+      for (uint32_t c = 0; c < 2; ++c) fill_sky(elements_[child + c], half + c);
     } else if (elements_[id].kind == ElementKind::kCluster) {
       const FaceCluster& node = set_->tree(set_->parts[blank.part]).nodes[elements_[id].shape];
       for (uint32_t c = 0; c < 2; ++c) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "element/leaf_mesh.h"
+#include "element/sky_cells.h"
 #include "element/surface_set.h"
 #include "math/box.h"
 #include "math/form_factor.h"
@@ -81,7 +82,7 @@ class ElementPool {
   ElementId root() const { return root_; }  ///< kNoElement when there is no surface
   std::span<const ElementId> lights() const {
     return lights_;
-  }  ///< sky octants, point, spot and directional lights
+  }  ///< first cells of the sky, point, spot and directional lights
   size_t volume_clusters() const { return volume_boxes_.size(); }
   const SurfaceSet& surfaces() const { return *set_; }
 
@@ -115,7 +116,17 @@ class ElementPool {
   /// Corners of a triangle or patch.
   ElementPolygon polygon(ElementId id) const;
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
-  const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_[elements_[id].shape]; }
+  const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_cell(id).corners; }
+  /// SkyCells::relative_luminance.
+  float sky_relative_luminance(ElementId id, const vec3& direction) const {
+    return sky_.relative_luminance(elements_[id].shape, direction);
+  }
+  const SkyCell& sky_cell(ElementId id) const { return sky_[elements_[id].shape]; }
+  /// How far radiosity is from its mean on the average over a sky element, lm/m^2 (SkyCell::unevenness); 0
+  /// for others, whose children say so.
+  float unevenness(ElementId id) const {
+    return elements_[id].kind == ElementKind::kSky ? kPi * sky_cell(id).unevenness : 0.0f;
+  }
   const Light& light(ElementId id) const { return set_->scene->lights[elements_[id].shape]; }
 
   /// The leaf mesh of a part, or null when none of its triangles has been cut.
@@ -150,7 +161,7 @@ class ElementPool {
   bool split_patch(uint32_t patch);
   uint32_t patch_of_triangle(uint32_t part, uint32_t triangle);
   void store_polygon(Patch& patch);
-  void expand_sky(ElementId id);
+  void fill_sky(Element& element, uint32_t cell) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
   SurfacePoint sample_polygon(const ElementPolygon& polygon, const vec3& normal, float u, float v) const;
   void polygon_quadrature(const ElementPolygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
@@ -162,7 +173,7 @@ class ElementPool {
   std::vector<Element> elements_;
   std::vector<SurfacePoint> samples_;
   std::vector<ElementId> lights_, surface_roots_;
-  std::vector<std::array<vec3, 3>> sky_;
+  SkyCells sky_;
   ElementId root_ = kNoElement;
   std::vector<Box> volume_boxes_;
 

@@ -177,7 +177,7 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
 }
 
 vec3 ElementPool::sky_direction(ElementId id, float u, float v) const {
-  const std::array<vec3, 3>& c = sky_[elements_[id].shape];
+  const std::array<vec3, 3>& c = sky_corners(id);
   if (solid_angle(c[0], c[1], c[2]) >= kSmallSolidAngle)
     return sample_spherical_triangle(c[0], c[1], c[2], u, v);
   const float s = std::sqrt(u);

@@ -260,22 +260,10 @@ ElementPolygon ElementPool::polygon(ElementId id) const {
                                              : triangle_polygon(element, element.shape);
 }
 
-void ElementPool::expand_sky(ElementId id) {
-  // The longest edge is halved, so that cells stay near equilateral.
-  const Element parent = elements_[id];
-  const std::array<vec3, 3> c = sky_[parent.shape];
-  int longest = 0;
-  for (int k = 1; k < 3; ++k)
-    if (dot(c[k], c[(k + 1) % 3]) < dot(c[longest], c[(longest + 1) % 3])) longest = k;
-  const vec3 a = c[longest], b = c[(longest + 1) % 3], apex = c[(longest + 2) % 3];
-  const vec3 middle = normalize(a + b);
-  for (uint32_t k = 0; k < 2; ++k) {
-    Element& child = elements_[parent.first_child + k];
-    child.kind = ElementKind::kSky;
-    child.exitance = parent.exitance;
-    child.shape = static_cast<uint32_t>(sky_.size());
-    sky_.push_back(k == 0 ? std::array<vec3, 3>{a, middle, apex} : std::array<vec3, 3>{middle, b, apex});
-  }
+void ElementPool::fill_sky(Element& element, uint32_t cell) const {
+  element.kind = ElementKind::kSky;
+  element.shape = cell;
+  element.exitance = kPi * sky_[cell].nits;
 }
 
 }  // namespace goldthread

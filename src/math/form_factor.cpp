@@ -1,29 +1,9 @@
 #include "math/form_factor.h"
 
 #include <algorithm>
-#include <array>
 
 namespace goldthread {
 namespace {
-
-// Cuts a polygon of directions by the half space dot(n, v) >= 0 (Sutherland-Hodgman, one plane). Returns the
-// count.
-size_t clip_to_horizon(const vec3& n, std::span<const vec3> in, std::array<vec3, kMaxPolygon + 1>& out) {
-  size_t count = 0;
-  vec3 previous = in.back();
-  float previous_height = dot(n, previous);
-  for (const vec3& current : in) {
-    const float height = dot(n, current);
-    if ((height < 0) != (previous_height < 0)) {
-      const float t = previous_height / (previous_height - height);
-      out[count++] = previous + t * (current - previous);
-    }
-    if (height >= 0) out[count++] = current;
-    previous = current;
-    previous_height = height;
-  }
-  return count;
-}
 
 // Sum of Theta * Gamma / 2 pi over the edges of a polygon of directions, clockwise or not deciding the sign.
 // Double precision: the edge terms of a small, far polygon cancel almost wholly.
@@ -48,6 +28,24 @@ vec3 contour_sum(std::span<const vec3> directions) {
 }
 
 }  // namespace
+
+// Sutherland-Hodgman, one plane.
+size_t clip_to_horizon(const vec3& n, std::span<const vec3> in, std::array<vec3, kMaxPolygon + 1>& out) {
+  size_t count = 0;
+  vec3 previous = in.back();
+  float previous_height = dot(n, previous);
+  for (const vec3& current : in) {
+    const float height = dot(n, current);
+    if ((height < 0) != (previous_height < 0)) {
+      const float t = previous_height / (previous_height - height);
+      out[count++] = previous + t * (current - previous);
+    }
+    if (height >= 0) out[count++] = current;
+    previous = current;
+    previous_height = height;
+  }
+  return count;
+}
 
 vec3 polygon_form_factor(const vec3& x, const vec3& n, std::span<const vec3> corners) {
   std::array<vec3, kMaxPolygon> directions;

@@ -1,5 +1,6 @@
 // How much of what a shape sends arrives at a point: closed forms.
 #pragma once
+#include <array>
 #include <span>
 
 #include "math/vec.h"
@@ -8,6 +9,10 @@ namespace goldthread {
 
 /// Most corners a polygon may have here, and one more for horizon clipping.
 constexpr size_t kMaxPolygon = 24;
+
+/// Cuts a convex polygon of directions by the half space dot(n, v) >= 0; returns how many corners `out` has
+/// then, fewer than 3 where nothing is left. At most kMaxPolygon corners.
+size_t clip_to_horizon(const vec3& n, std::span<const vec3> in, std::array<vec3, kMaxPolygon + 1>& out);
 
 /// The vector form factor of a planar polygon at `x`: m with dot(n, m) the point-to-polygon form factor for a
 /// receiver of normal n, so that irradiance = dot(n, m) * radiosity (Lambert 1760; thesis equation 4.19 in

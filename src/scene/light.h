@@ -19,11 +19,4 @@ struct Light {
   float range = 0;  ///< metres, 0 for no limit
 };
 
-/// Luminance arriving from everywhere beyond the scene, uniform over the whole sphere.
-struct Sky {
-  vec3 radiance{0};  ///< nits
-
-  bool present() const { return radiance.x > 0 || radiance.y > 0 || radiance.z > 0; }
-};
-
 }  // namespace goldthread

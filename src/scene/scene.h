@@ -10,6 +10,7 @@
 #include "scene/image.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/sky.h"
 
 namespace goldthread {
 

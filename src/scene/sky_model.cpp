@@ -33,6 +33,10 @@ std::optional<dvec3> sun_above_horizon(const vec3& direction) {
   return size > 0 ? sun / size : dvec3(0, 0, 1);  // straight below: any way is as right
 }
 
+bool is_light(const vec3& value) {
+  return is_finite(value) && !glm::any(glm::lessThan(value, vec3(0)));
+}
+
 Error no_sun_direction() {
   return {ErrorCode::kUsage, "the sun has no direction", "", "", "give three finite numbers, not all 0"};
 }
@@ -43,18 +47,22 @@ dvec3 SkyModel::CieGeneral::radiance(const dvec3& direction) const {
   return dvec3(distribution.value(direction.y, angle_between(direction, sun)));
 }
 
-SkyModel::SkyModel(const Shape& shape, const dvec3& scale) : shape_(shape), scale_(scale) {
+SkyModel::SkyModel(const SkyDescription& description, const Shape& shape, const dvec3& scale)
+    : description_(description), shape_(shape), scale_(scale) {
   illuminance_ = scale_ * shape_illuminance();
 }
 
 SkyModel SkyModel::uniform(const vec3& nits) {
-  return SkyModel(Uniform{}, dvec3(nits));
+  SkyDescription description;
+  description.level = SkyLevel::zenith_luminance(nits);
+  return SkyModel(description, Uniform{}, dvec3(nits));
 }
 
-Result<SkyModel> SkyModel::scaled(const Shape& shape, const SkyLevel& level) {
-  if (!is_finite(level.value) || glm::any(glm::lessThan(level.value, vec3(0))))
+Result<SkyModel> SkyModel::scaled(const SkyDescription& description, const Shape& shape) {
+  const SkyLevel& level = description.level;
+  if (!is_light(level.value))
     return Error{ErrorCode::kUsage, "the sky's brightness is negative or not finite", "", "", ""};
-  SkyModel sky(shape, dvec3(1));
+  SkyModel sky(description, shape, dvec3(1));
   const dvec3 unit = level.measure == SkyLevel::Measure::kHorizontalIlluminance
                          ? sky.illuminance_
                          : sky.sky_radiance(dvec3(0, 1, 0));
@@ -69,7 +77,12 @@ Result<SkyModel> SkyModel::cie_general(int type, const vec3& sun_direction, cons
                  "types are 1 (overcast) to 15, 5 uniform, 12 clear"};
   const std::optional<dvec3> sun = sun_above_horizon(sun_direction);
   if (!sun) return no_sun_direction();
-  return scaled(CieGeneral{standard_distribution(type), *sun}, level);
+  SkyDescription description;
+  description.kind = SkyDescription::Kind::kCieGeneral;
+  description.cie_type = type;
+  description.sun_direction = sun_direction;
+  description.level = level;
+  return scaled(description, CieGeneral{standard_distribution(type), *sun});
 }
 
 Result<SkyModel> SkyModel::overcast(const SkyLevel& level) {
@@ -81,18 +94,49 @@ Result<SkyModel> SkyModel::clear(const vec3& sun_direction, const SkyLevel& leve
 }
 
 Result<SkyModel> SkyModel::traditional_overcast(const SkyLevel& level) {
-  return scaled(TraditionalOvercast{}, level);
+  SkyDescription description;
+  description.kind = SkyDescription::Kind::kTraditionalOvercast;
+  description.level = level;
+  return scaled(description, TraditionalOvercast{});
 }
 
 Result<SkyModel> SkyModel::preetham(const vec3& sun_direction, float turbidity) {
   if (const Status status = check_turbidity(turbidity); !status) return status.error();
   const std::optional<dvec3> sun = sun_above_horizon(sun_direction);
   if (!sun) return no_sun_direction();
-  return SkyModel(PreethamSky(*sun, double{turbidity}), dvec3(1));
+  SkyDescription description;
+  description.kind = SkyDescription::Kind::kPreetham;
+  description.sun_direction = sun_direction;
+  description.turbidity = turbidity;
+  return SkyModel(description, PreethamSky(*sun, double{turbidity}), dvec3(1));
+}
+
+Result<SkyModel> SkyModel::make(const SkyDescription& description) {
+  if (!is_light(description.ground_reflectance) || !is_light(description.sunlight))
+    return Error{ErrorCode::kUsage, "the ground's light is negative or not finite", "", "", ""};
+  const auto above_ground = [&](const Result<SkyModel>& sky) -> Result<SkyModel> {
+    if (!sky) return sky.error();
+    return sky->with_ground(description.ground_reflectance, description.sunlight);
+  };
+  switch (description.kind) {
+    case SkyDescription::Kind::kUniform:
+      if (!is_light(description.level.value))
+        return Error{ErrorCode::kUsage, "the sky's brightness is negative or not finite", "", "", ""};
+      return above_ground(uniform(description.level.value));
+    case SkyDescription::Kind::kCieGeneral:
+      return above_ground(cie_general(description.cie_type, description.sun_direction, description.level));
+    case SkyDescription::Kind::kTraditionalOvercast:
+      return above_ground(traditional_overcast(description.level));
+    case SkyDescription::Kind::kPreetham:
+      return above_ground(preetham(description.sun_direction, description.turbidity));
+  }
+  return Error{ErrorCode::kUsage, "there is no such sky model", "", "", ""};
 }
 
 SkyModel SkyModel::with_ground(const vec3& reflectance, const vec3& sunlight) const {
   SkyModel sky = *this;
+  sky.description_.ground_reflectance = reflectance;
+  sky.description_.sunlight = sunlight;
   sky.ground_ = dvec3(reflectance) * (illuminance_ + dvec3(sunlight)) / std::numbers::pi;
   return sky;
 }

@@ -1,5 +1,6 @@
 // Skies that are not the same all over: the CIE's standard skies and Preetham's clear one, as values.
 #pragma once
+#include <cstdint>
 #include <variant>
 
 #include "goldthread/error.h"
@@ -20,6 +21,18 @@ struct SkyLevel {
   static SkyLevel horizontal_illuminance(const vec3& lux) { return {Measure::kHorizontalIlluminance, lux}; }
   /// Nits straight above. A sun near the zenith makes that its halo.
   static SkyLevel zenith_luminance(const vec3& nits) { return {Measure::kZenithLuminance, nits}; }
+};
+
+/// What a SkyModel is made of, as plain values.
+struct SkyDescription {
+  enum class Kind : uint8_t { kUniform, kCieGeneral, kTraditionalOvercast, kPreetham };
+  Kind kind = Kind::kUniform;
+  int32_t cie_type = 5;         ///< of kCieGeneral
+  vec3 sun_direction{0, 1, 0};  ///< of kCieGeneral and kPreetham
+  SkyLevel level;               ///< of all but kPreetham; of kUniform the zenith's luminance
+  float turbidity = 3;          ///< of kPreetham
+  vec3 ground_reflectance{0};   ///< diffuse, 0..1
+  vec3 sunlight{0};             ///< lux on flat ground by a sun that is no part of the sky
 };
 
 /// A sky's luminance in every direction, the sun's disc not included (scene/sun.h), and flat, diffuse ground
@@ -44,6 +57,11 @@ class SkyModel {
   /// A coloured clear or hazy sky in absolute units (scene/preetham_sky.h). Error: turbidity out of 1.7..10,
   /// a sun without direction.
   static Result<SkyModel> preetham(const vec3& sun_direction, float turbidity);
+
+  /// The one that `description` says; errors as of the others, and for values that are none or negative.
+  static Result<SkyModel> make(const SkyDescription& description);
+  /// What it was made of: `make` gives the same again.
+  const SkyDescription& description() const { return description_; }
 
   /// The same sky over ground of that diffuse reflectance (0 before), which also gets `sunlight` lux on the
   /// flat from a sun that is no part of the sky.
@@ -72,12 +90,13 @@ class SkyModel {
   };
   using Shape = std::variant<Uniform, TraditionalOvercast, CieGeneral, PreethamSky>;
 
-  SkyModel(const Shape& shape, const dvec3& scale);
-  static Result<SkyModel> scaled(const Shape& shape, const SkyLevel& level);
+  SkyModel(const SkyDescription& description, const Shape& shape, const dvec3& scale);
+  static Result<SkyModel> scaled(const SkyDescription& description, const Shape& shape);
   dvec3 sky_radiance(const dvec3& direction) const;
   dvec3 shape_radiance(const dvec3& direction) const;
   dvec3 shape_illuminance() const;
 
+  SkyDescription description_;
   Shape shape_;
   dvec3 scale_{1};        ///< of the shape's radiance
   dvec3 illuminance_{0};  ///< lux

@@ -114,15 +114,36 @@ struct Counter {
     return static_cast<double>(sum.load()) / 1e6 / rays;
   }
 
-  // Where a ray from a surface point in a cosine direction ends: 0 on a lit side, 1 nowhere, 2 on an unlit
-  // back.
-  int end_of_ray(const SurfacePoint& x, uint32_t i) const {
+  Ray cosine_ray(const SurfacePoint& x, uint32_t i) const {
     const UnitSquarePoint uv = r2_point(i, seed + 2);
     Ray ray;
     ray.direction = cosine_direction(x.normal, uv.u, uv.v);
     ray.origin = x.position + solver.visibility().epsilon * x.normal;
+    return ray;
+  }
+
+  // Where a ray from a surface point in a cosine direction ends: 0 on a lit side, 1 nowhere, 2 on an unlit
+  // back.
+  int end_of_ray(const SurfacePoint& x, uint32_t i) const {
+    const Ray ray = cosine_ray(x, i);
     const Hit hit = solver.visibility().caster->closest(ray);
     return hit.missed() ? 1 : lands(ray, hit) ? 0 : 2;
+  }
+
+  // Flux that reaches surfaces straight from the sky, lm. Rays are counted in shares of the sky's mean, for
+  // `mean` sums in fixed point.
+  double from_sky(const Leaves& by_area, const Sky& sky) const {
+    double level = 0;
+    for (const ElementId id : pool().lights())
+      if (pool()[id].kind == ElementKind::kSky)
+        level +=
+            static_cast<double>(luminance(pool()[id].exitance) * pool().sky_cell(id).solid_angle / (4 * kPi));
+    if (!(level > 0)) return 0;
+    const double share = mean(by_area, [&](ElementId, const SurfacePoint& x, uint32_t i) {
+      if (end_of_ray(x, i) != 1) return 0.0;
+      return static_cast<double>(kPi * luminance(sky.radiance_towards(cosine_ray(x, i).direction))) / level;
+    });
+    return share * level * by_area.total();
   }
 
   // Flux that reaches surfaces straight from a sun, lm.
@@ -195,11 +216,7 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
   });
   balance.emitted = own;
   const Sky& sky = pool.surfaces().scene->sky;
-  if (sky.present())
-    balance.emitted += by_area.total() * static_cast<double>(kPi * luminance(sky.radiance)) *
-                       counter.mean(by_area, [&](ElementId, const SurfacePoint& x, uint32_t i) {
-                         return counter.end_of_ray(x, i) == 1 ? 1.0 : 0.0;
-                       });
+  if (sky.present()) balance.emitted += counter.from_sky(by_area, sky);
   for (const ElementId light : pool.lights()) {
     if (pool[light].kind == ElementKind::kSun) balance.emitted += counter.from_sun(by_area, light);
     if (pool[light].kind != ElementKind::kPoint) continue;

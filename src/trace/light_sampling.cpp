@@ -72,6 +72,8 @@ LightSample Lamp::light_at(const vec3& origin, const vec3& normal) const {
 LightSampler::LightSampler(const TracedScene& scene) : scene_(scene), emitters_(scene) {
   for (const Light& lamp : scene.scene().lights)
     if (luminance(lamp.intensity) > 0) lamps_.emplace_back(lamp);
+  const Sky& sky = scene.scene().sky;
+  if (sky.present() && !sky.is_uniform()) sky_table_.emplace(sky);
 }
 
 LightSample LightSampler::sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const {
@@ -100,11 +102,26 @@ float LightSampler::emitter_density(uint32_t triangle, float distance, float cos
 LightSample LightSampler::sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const {
   LightSample light;
   light.shadow.origin = origin;
-  light.shadow.direction = cosine_direction(normal, p);
-  light.cosine = std::max(0.0f, dot(normal, light.shadow.direction));
-  light.density = sky_density(light.cosine);
-  light.irradiance = kPi * scene_.scene().sky.radiance;
+  if (!sky_table_) {
+    light.shadow.direction = cosine_direction(normal, p);
+    light.cosine = std::max(0.0f, dot(normal, light.shadow.direction));
+    light.density = sky_density(light.shadow.direction, light.cosine);
+    light.irradiance = kPi * scene_.scene().sky.radiance;
+    return light;
+  }
+  if (sky_table_->empty()) return light;
+  const SkyDirection drawn = sky_table_->sample(unit_double(p.u), unit_double(p.v));
+  light.shadow.direction = drawn.direction;
+  light.cosine = dot(normal, drawn.direction);
+  light.density = drawn.density;
+  if (!(light.cosine > 0) || !(light.density > 0)) return light;
+  light.irradiance = scene_.scene().sky.radiance_towards(drawn.direction) * (light.cosine / light.density);
   return light;
+}
+
+float LightSampler::sky_density(const vec3& direction, float cosine) const {
+  if (sky_table_) return sky_table_->empty() ? 0.0f : sky_table_->density(direction);
+  return has_sky() ? cosine / kPi : 0.0f;
 }
 
 LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, double u,

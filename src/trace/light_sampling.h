@@ -1,11 +1,13 @@
 // The light that reaches a point directly, one sample at a time, and the densities that multiple importance
 // sampling weighs samples by (Veach and Guibas 1995).
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "trace/emitter_table.h"
 #include "trace/scrambled_sobol.h"
+#include "trace/sky_table.h"
 #include "trace/traced_scene.h"
 
 namespace goldthread {
@@ -64,7 +66,8 @@ class LightSampler {
   /// One point of one emitting triangle, drawn by power. `origin` is off its surface already; `normal` is
   /// unit.
   LightSample sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  /// One direction to the sky: it is even, so that the cosine alone is worth following.
+  /// One direction to the sky: of a uniform one by the cosine, which alone is worth following; else by
+  /// luminance.
   LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
   /// One point, spot or directional light, drawn by what it would bring were nothing in between. `sums` is
   /// room to work in, lamp_count() long.
@@ -73,13 +76,14 @@ class LightSampler {
   /// Density, 1/sr, with which sample_emitter takes the direction in which a ray has met an emitter after
   /// `distance` metres at the given cosine between ray and normal.
   float emitter_density(uint32_t triangle, float distance, float cosine) const;
-  /// Density, 1/sr, with which sample_sky takes a direction at that cosine to the receiver's normal.
-  float sky_density(float cosine) const { return has_sky() ? cosine / kPi : 0.0f; }
+  /// Density, 1/sr, with which sample_sky takes a unit direction at that cosine to the receiver's normal.
+  float sky_density(const vec3& direction, float cosine) const;
 
  private:
   const TracedScene& scene_;
   EmitterTable emitters_;
-  std::vector<Lamp> lamps_;  ///< those that shine
+  std::optional<SkyTable> sky_table_;  ///< of a sky that is not uniform
+  std::vector<Lamp> lamps_;            ///< those that shine
 };
 
 }  // namespace goldthread

@@ -249,8 +249,9 @@ bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) c
   if (met.missed()) {
     const float cosine = std::max(0.0f, dot(path.normal, ray.direction));
     if (lights_.has_sky())
-      sum += path.throughput * (kPi * power_heuristic(cosine / kPi, lights_.sky_density(cosine))) *
-             scene_.scene().sky.radiance;
+      sum += path.throughput *
+             (kPi * power_heuristic(cosine / kPi, lights_.sky_density(ray.direction, cosine))) *
+             scene_.scene().sky.radiance_towards(ray.direction);
     return false;
   }
   if (!met.live) return false;
@@ -305,7 +306,7 @@ void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits
       ++count.rays;
     }
     if (met.missed()) {
-      nits[i] = scene_.scene().sky.radiance;
+      nits[i] = scene_.scene().sky.radiance_towards(ray.direction);
     } else if (scene_.material(met.triangle).unlit) {
       nits[i] = scene_.unlit_colour(met.triangle, met.weights);
     } else {

@@ -17,7 +17,7 @@ vec3 look(const ShownScene& shown, const Sky& sky, Ray ray) {
   float passed = 1;
   for (int layer = 0; layer < kMostLayers; ++layer) {
     const Hit hit = shown.closest(ray);
-    if (hit.missed()) return nits + passed * sky.radiance;
+    if (hit.missed()) return nits + passed * sky.radiance_towards(ray.direction);
     const Appearance seen = shown.appearance(hit, ray);
     nits += passed * seen.alpha * seen.nits;
     passed *= 1 - seen.alpha;

@@ -92,6 +92,20 @@ void add_light(Fingerprint& print, const Light& light) {
   print.add(vec3(light.inner_cone, light.outer_cone, light.range));
 }
 
+void add_sky(Fingerprint& print, const Sky& sky) {
+  print.add(sky.radiance);
+  if (sky.model) {
+    const SkyDescription& d = sky.model->description();
+    for (const int32_t number : {int32_t(d.kind), d.cie_type, int32_t(d.level.measure)}) print.add(number);
+    for (const vec3& v : {d.sun_direction, d.level.value, d.ground_reflectance, d.sunlight}) print.add(v);
+    print.add(d.turbidity);
+  }
+  if (!sky.map) return;
+  print.add(sky.map->picture().width);
+  print.add(sky.map->rotation());
+  for (const vec3& pixel : sky.map->picture().pixels) print.add(pixel);
+}
+
 }  // namespace
 
 TracedScene::TracedScene(const Scene& scene) : scene_(scene) {
@@ -270,7 +284,7 @@ uint64_t TracedScene::fingerprint() const {
   for (const Image& image : scene_.images) add_image(print, image);
   for (const Material& m : scene_.materials) add_material(print, m);
   for (const Light& light : scene_.lights) add_light(print, light);
-  print.add(scene_.sky.radiance);
+  add_sky(print, scene_.sky);
   return print.value();
 }
 

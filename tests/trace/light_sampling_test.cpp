@@ -129,8 +129,10 @@ TEST(LightSampling, SkyDensityIntegratesToOne) {
   const Traced t(std::move(scene));
   double sum = 0;
   constexpr uint32_t kCount = 1u << 16;
-  for (uint32_t i = 0; i < kCount; ++i)
-    sum += double(t.tracer->lights().sky_density(std::max(0.0f, even_direction(point(i)).z)));
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const vec3 d = even_direction(point(i));
+    sum += double(t.tracer->lights().sky_density(d, std::max(0.0f, d.z)));
+  }
   EXPECT_NEAR(sum * 4 * double(kPi) / kCount, 1, 1e-3);
 }
 

@@ -246,6 +246,14 @@ void add_surface(const ElementPool& pool, ElementId source, const vec3& x, const
   add_tree(placed, e.shape, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance, sum);
 }
 
+// A cell that the horizon does not cut brings exactly what its light is, however uneven; of what is cut, the
+// mean.
+vec3 sky_transfer(const SkyCell& cell, const vec3& n) {
+  const auto& [a, b, c] = cell.corners;
+  const bool whole = dot(a, n) >= 0 && dot(b, n) >= 0 && dot(c, n) >= 0;
+  return whole && cell.unevenness > 0 ? cell.transfer : sky_form_factor(n, cell.corners);
+}
+
 vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n) {
   switch (pool[source].kind) {
     case ElementKind::kVolume:
@@ -258,7 +266,7 @@ vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, 
       return sum.m;
     }
     case ElementKind::kSky:
-      return sky_form_factor(n, pool.sky_corners(source));
+      return sky_transfer(pool.sky_cell(source), n);
     case ElementKind::kPoint:
       return point_light_transfer(pool.light(source), x, n);
     case ElementKind::kSun: {

@@ -27,7 +27,9 @@ void RadiosityState::grow_to(const ElementPool& pool) {
     radiosity[i] = e.exitance + e.reflectance * irradiance[i];
     shown[i] = radiosity[i];
     openness[i] = e.area;
-    low[i] = high[i] = largest(radiosity[i]);
+    const float uneven = pool.unevenness(static_cast<ElementId>(i));
+    low[i] = largest(radiosity[i]) - uneven;
+    high[i] = largest(radiosity[i]) + uneven;
   }
 }
 

@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "math/spherical_triangle.h"
 #include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
@@ -50,8 +49,7 @@ double likely_factor(const ElementPool& pool, const Link& link) {
       most = 1 / std::max(squared, static_cast<double>(r.radius * r.radius));
       break;
     case ElementKind::kSky: {
-      const std::array<vec3, 3>& c = pool.sky_corners(link.source);
-      most = static_cast<double>(solid_angle(c[0], c[1], c[2]) / kPi);
+      most = static_cast<double>(pool.sky_cell(link.source).solid_angle / kPi);
       break;
     }
     default:
@@ -76,7 +74,7 @@ bool may_open_receiver(const Element& e, float least_area) {
 }
 
 bool may_open_source(const Element& e, float least_area) {
-  return may_open_receiver(e, e.kind == ElementKind::kSky ? 0.0f : least_area);
+  return e.kind == ElementKind::kSky ? divisible(e) : may_open_receiver(e, least_area);
 }
 
 Decision decide(const ElementPool& pool, const RadiosityState& state, const Link& link,
@@ -225,7 +223,10 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const double missed = unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-  error.source = 0.25 * range * static_cast<double>(link.mean) * area;
+  // What an uneven piece of sky brings may come from where none of few rays went: they say what is likely.
+  const double likely = s.kind == ElementKind::kSky ? unoccluded * (v * link.rays + 1) / (link.rays + 2.0)
+                                                    : static_cast<double>(link.mean);
+  error.source = 0.25 * range * likely * area;
   if (link.visibility > 0 && link.visibility < 255 && (s.radius > r.radius || s.kind == ElementKind::kSky))
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
   return error;

@@ -104,7 +104,8 @@ vec3 emitted_power(const ElementPool& pool) {
   for (const ElementId id : pool.lights()) {
     const Element& e = pool[id];
     if (e.kind == ElementKind::kSky) {
-      power += e.exitance * box.surface_area() / 8.0f;  // an octant's share of what crosses the box inward
+      // The cell's share of what crosses the box inward, were the box a ball.
+      power += e.exitance * box.surface_area() * (pool.sky_cell(id).solid_angle / (4 * kPi));
     } else if (e.kind == ElementKind::kSun) {
       const vec3 d = glm::abs(pool.light(id).direction);
       power += e.exitance * (d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y);

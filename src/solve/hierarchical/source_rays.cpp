@@ -4,6 +4,8 @@
 #include <chrono>
 
 #include "base/rng.h"
+#include "math/form_factor.h"
+#include "math/spherical_triangle.h"
 
 namespace goldthread {
 namespace {
@@ -42,6 +44,23 @@ float timed_ray(const RayCaster& caster, const Ray& ray, RayCount& count) {
   return passing;
 }
 
+// What the horizon of a point leaves of a piece of sky.
+struct SkyView {
+  std::array<vec3, kMaxPolygon + 1> corners;
+  size_t count = 0;
+  bool cut = false;
+
+  SkyView(const ElementPool& pool, ElementId source, const vec3& n) {
+    if (pool[source].kind != ElementKind::kSky) return;
+    // Of a piece so small that polygons of directions are no longer precise, most will do.
+    constexpr float kSmall = 0.05f;
+    const SkyCell& cell = pool.sky_cell(source);
+    for (const vec3& c : cell.corners) cut |= dot(c, n) < 0;
+    cut &= cell.solid_angle > kSmall;
+    if (cut) count = clip_to_horizon(n, cell.corners, corners);
+  }
+};
+
 // Draws points of a source as one point sees them.
 struct SourceSampler {
   const ElementPool& pool;
@@ -53,6 +72,7 @@ struct SourceSampler {
   const vec3 way = e.centre - x;
   const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume &&
                     dot(way, way) < kNearSource * e.radius * e.radius;
+  const SkyView sky{pool, source, n};
 
   // Of what turns many ways, or sinks below the horizon, most points may be out of sight.
   bool hides_itself() const {
@@ -65,7 +85,9 @@ struct SourceSampler {
     const UnitSquarePoint uv = r2_point(i, turn);
     if (e.kind == ElementKind::kSky) {
       ray = {x + epsilon * n, pool.sky_direction(source, uv.u, uv.v)};
-      return std::max(0.0f, dot(ray.direction, n));
+      if (sky.cut) ray.direction = sample_spherical_polygon({sky.corners.data(), sky.count}, uv.u, uv.v);
+      const float cosine = std::max(0.0f, dot(ray.direction, n));
+      return cosine > 0 ? cosine * pool.sky_relative_luminance(source, ray.direction) : 0.0f;
     }
     float weight = 0;
     if (near) {
@@ -155,7 +177,10 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   const SeenShare share = look(pool, source, x, n, rays, turn, count);
   if (share.seen + share.hidden > 0) return share.seen / (share.seen + share.hidden);
   // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
-  if (e.kind == ElementKind::kSky) return 0;
+  if (e.kind == ElementKind::kSky) {
+    const vec3 m = sky_form_factor(n, pool.sky_corners(source));
+    return m == vec3(0) ? unknown : timed_ray(*caster, {origin, normalize(m)}, count);
+  }
   const vec3 to_centre = e.centre - origin;
   const float distance = length(to_centre);
   if (distance <= 1.01f * e.radius) return unknown;

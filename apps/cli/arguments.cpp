@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "light_arguments.h"
 #include "values.h"
 
 namespace goldthread::cli {
@@ -27,6 +28,9 @@ constexpr const char* kBakeExamples =
     "  goldthread bake room.glb -o lit.glb -o lit.png --quality high\n"
     "  goldthread bake room.glb -o lit.glb --output unlit\n"
     "  goldthread bake house.obj -o lit.glb --sky 10000lux --sun 80000 --sun-elevation 35\n"
+    "  goldthread bake house.glb -o lit.glb --sky-model clear --place 59.3,18.1 --date 2026-06-21 --time "
+    "15:00 \\\n"
+    "    --time-zone 2 --sun\n"
     "  goldthread bake car.glb -o car.gold --time-limit 60 --max-memory 2G --report car.json";
 
 constexpr const char* kReferenceExamples =
@@ -70,16 +74,6 @@ Error usage_error(std::string message, std::string cure = "see goldthread --help
   return Error{ErrorCode::kUsage, std::move(message), "", "", std::move(cure)};
 }
 
-/// `--sun` may stand alone or before a number. Giving a lone one its number here keeps it from taking the
-/// argument that follows it.
-void complete_sun(std::vector<std::string>& arguments) {
-  for (size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i] != "--sun") continue;
-    if (i + 1 < arguments.size() && is_number(arguments[i + 1])) continue;
-    arguments[i] = fmt::format("--sun={}", BakeOptions::Sun{}.illuminance);
-  }
-}
-
 /// An Error when the first argument should be a verb and is none; CLI11 would only say that one is required.
 Status check_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return Nothing{};
@@ -108,12 +102,6 @@ void add_info(CLI::App& app, InfoCommand& info) {
       ->type_name("FILE");
 }
 
-/// Light that is not in the scene, before it is a value.
-struct LightTexts {
-  std::string sky;
-  BakeOptions::Sun sun;
-};
-
 /// Texts of options that become values after parsing.
 struct BakeTexts {
   std::string quality = "medium", mode = "vertex-light", memory, picture;
@@ -127,25 +115,6 @@ struct ReferenceTexts {
   double time_limit = 0;
   LightTexts light;
 };
-
-void add_light(CLI::App& verb, LightTexts& texts) {
-  const auto group = "Light that is not in the scene";
-  verb.add_option("--sky", texts.sky, "even sky: luminance in nits, one number or R,G,B; or 10000lux")
-      ->type_name("NITS")
-      ->group(group);
-  verb.add_option("--sun", texts.sun.illuminance, "sun: illuminance in lux facing it (100000)")
-      ->type_name("[LUX]")
-      ->check(CLI::Range(0.0, 1e9).description(""))
-      ->group(group);
-  verb.add_option("--sun-elevation", texts.sun.elevation, "degrees above the horizon (45)")
-      ->type_name("DEG")
-      ->check(CLI::Range(-90.0, 90.0).description(""))
-      ->group(group);
-  verb.add_option("--sun-azimuth", texts.sun.azimuth, "degrees: 0 is -Z, 90 is +X (135)")
-      ->type_name("DEG")
-      ->check(CLI::Range(-360.0, 360.0).description(""))
-      ->group(group);
-}
 
 constexpr const char* kResults = "Results";
 constexpr const char* kEffort = "Effort";
@@ -260,21 +229,6 @@ void add_reference(CLI::App& app, ReferenceCommand& reference, ReferenceTexts& t
   verb->footer(kReferenceExamples);
 }
 
-Status finish_light(const CLI::App& verb, const LightTexts& texts, std::optional<std::array<float, 3>>& sky,
-                    std::optional<BakeOptions::Sun>& sun) {
-  if (verb.count("--sky") > 0) {
-    sky = parse_sky(texts.sky);
-    if (!sky) {
-      return usage_error("--sky: '" + texts.sky + "' is no luminance",
-                         "write nits as 2000 or 2000,2200,2600, or lux as 10000lux");
-    }
-  }
-  if (verb.count("--sun") > 0) sun = texts.sun;
-  if (!sun && (verb.count("--sun-elevation") > 0 || verb.count("--sun-azimuth") > 0))
-    return usage_error("the sun has a place but does not shine", "add --sun");
-  return Nothing{};
-}
-
 Status finish_picture(const CLI::App& verb, const std::string& text, int& width, int& height) {
   if (verb.count("--picture-size") == 0) return Nothing{};
   const auto size = parse_picture_size(text);
@@ -299,7 +253,7 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.max_memory)
       return usage_error("--max-memory: '" + texts.memory + "' is no size", "write 2G, 500M or bytes");
   }
-  if (Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  if (Status status = finish_light(verb, texts.light, options); !status) return status;
   return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
 }
 
@@ -340,7 +294,7 @@ Status finish_reference(const CLI::App& verb, const ReferenceTexts& texts, Refer
     if (!options.target_error)
       return usage_error("--target-error: '" + texts.target_error + "' is no share", "write 0.01 or 1%");
   }
-  if (Status status = finish_light(verb, texts.light, options.sky, options.sun); !status) return status;
+  if (Status status = finish_light(verb, texts.light, options); !status) return status;
   return finish_picture(verb, texts.picture, options.picture_width, options.picture_height);
 }
 
@@ -374,7 +328,8 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   add_reference(app, reference, reference_texts);
 
   if (const Status status = check_verb(app, arguments); !status) return status.error();
-  complete_sun(arguments);
+  const bool lone_sun = complete_sun(arguments);
+  texts.light.lone_sun = reference_texts.light.lone_sun = lone_sun;
   std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
   try {
     app.parse(arguments);

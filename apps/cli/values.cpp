@@ -71,6 +71,56 @@ std::optional<std::array<float, 3>> parse_sky(const std::string& text) {
   return std::array<float, 3>{float(channels[0]), float(channels[1]), float(channels[2])};
 }
 
+bool is_illuminance(const std::string& text) {
+  return ends_with(lower(text), "lux");
+}
+
+std::optional<std::vector<double>> parse_numbers(const std::string& text, char separator) {
+  std::string rest = text;
+  std::vector<double> numbers;
+  while (true) {
+    const auto number = take_number(rest);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+    if (rest.empty()) return numbers;
+    if (rest[0] != separator) return std::nullopt;
+    rest.erase(0, 1);
+  }
+}
+
+namespace {
+
+/// Whole numbers without sign, of at most four digits, with `separator` between them.
+std::optional<std::vector<int>> parse_digits(const std::string& text, char separator) {
+  std::vector<int> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    int number = 0;
+    const auto [rest, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || *at == '-' || rest - at > 4) return std::nullopt;
+    numbers.push_back(number);
+    if (rest == end) return numbers;
+    if (*rest != separator) return std::nullopt;
+    at = rest + 1;
+  }
+}
+
+}  // namespace
+
+std::optional<std::array<int, 3>> parse_date(const std::string& text) {
+  const auto parts = parse_digits(text, '-');
+  if (!parts || parts->size() != 3) return std::nullopt;
+  return std::array<int, 3>{(*parts)[0], (*parts)[1], (*parts)[2]};
+}
+
+std::optional<double> parse_hour(const std::string& text) {
+  const auto parts = parse_digits(text, ':');
+  if (!parts || parts->size() != 2 || (*parts)[0] > 24 || (*parts)[1] > 59) return std::nullopt;
+  const double hour = (*parts)[0] + (*parts)[1] / 60.0;
+  return hour <= 24 ? std::optional(hour) : std::nullopt;
+}
+
 std::optional<PictureSize> parse_picture_size(const std::string& text) {
   constexpr int kMost = 16384;
   PictureSize size;

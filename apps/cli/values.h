@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace goldthread::cli {
 
@@ -14,6 +15,15 @@ std::optional<uint64_t> parse_bytes(const std::string& text);
 /// Sky luminance: "2000" or "2000,2200,2600" (linear RGB) in nits; with "lux" at the end, the illuminance of
 /// an open horizontal plane, which is pi times the luminance.
 std::optional<std::array<float, 3>> parse_sky(const std::string& text);
+/// Whether such a text ends in "lux".
+bool is_illuminance(const std::string& text);
+
+/// Finite numbers with `separator` between them.
+std::optional<std::vector<double>> parse_numbers(const std::string& text, char separator);
+/// Year, month, day of "2026-06-21"; whether there is such a day is not asked.
+std::optional<std::array<int, 3>> parse_date(const std::string& text);
+/// Hours of "15:30", 0 to 24.
+std::optional<double> parse_hour(const std::string& text);
 
 struct PictureSize {
   int width = 0, height = 0;  ///< height 0: from the camera's aspect

@@ -1,6 +1,5 @@
 // The main job: a scene file in, a lit scene out. Also what `info` and `make` answer.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "goldthread/error.h"
+#include "goldthread/light.h"
 
 namespace goldthread {
 
@@ -20,7 +20,7 @@ enum class OutputMode {
                  ///< two-sided ones
 };
 
-struct BakeOptions {
+struct BakeOptions : LightOptions {
   std::string input;  ///< .gltf .glb .obj .ply .stl .fbx .dae
   std::vector<std::string>
       outputs;  ///< by extension: .glb .gltf (scene), .gold (solution), .png .exr (preview)
@@ -34,12 +34,6 @@ struct BakeOptions {
   std::optional<uint64_t> max_memory;  ///< bytes of resident memory
   int threads = 0;                     ///< 0: all
   uint64_t seed = 0;
-  std::optional<std::array<float, 3>> sky;  ///< uniform sky luminance, nits, linear RGB
-  struct Sun {
-    float illuminance = 100000;           ///< lux on a plane facing it
-    float elevation = 45, azimuth = 135;  ///< degrees; azimuth 0 is -Z, 90 is +X
-  };
-  std::optional<Sun> sun;
   bool fix_normals = false;                     ///< turn shells that are wound inside out
   int picture_width = 960, picture_height = 0;  ///< preview size; height 0 follows the camera's aspect
   std::string report_file;                      ///< JSON report, empty for none

@@ -1,6 +1,5 @@
 // The yardstick: irradiance and pictures by unbiased path tracing, with their standard errors.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,7 +13,7 @@ namespace goldthread {
 /// What to measure is one of: `points_file`, `random_points`, `vertices`, `texels`, `resume_file`,
 /// `pictures`. `resume_file` and `pictures` together go on with a picture, or with light maps; `texels` and
 /// `pictures` together write light maps.
-struct ReferenceOptions {
+struct ReferenceOptions : LightOptions {
   std::string input;  ///< scene, as in BakeOptions
 
   std::string points_file;     ///< JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres
@@ -50,10 +49,8 @@ struct ReferenceOptions {
   std::optional<double> time_limit;    ///< seconds for the whole run
   std::optional<double> target_error;  ///< mean over points of standard error over mean, as 0.01
 
-  int threads = 0;                          ///< 0: all
-  std::optional<uint64_t> seed;             ///< 0 when absent; when resuming, the file's
-  std::optional<std::array<float, 3>> sky;  ///< as in BakeOptions
-  std::optional<BakeOptions::Sun> sun;      ///< as in BakeOptions
+  int threads = 0;               ///< 0: all
+  std::optional<uint64_t> seed;  ///< 0 when absent; when resuming, the file's
   int picture_width = 960, picture_height = 0;
   double exposure = 0;  ///< of a .png; 0 chooses
 };

@@ -160,6 +160,10 @@ Result<Scene> read(const std::string& file) {
   for (const std::string& name : model->extensionsRequired)
     if (!is_known_extension(name))
       scene.warnings.push_back(fmt::format("the file requires {}, which is unknown; read without it", name));
+  for (const std::string& name : model->extensionsUsed)
+    if (name == "EXT_lights_image_based")
+      scene.warnings.emplace_back(
+          "its surroundings (EXT_lights_image_based) are left out: give them as --environment FILE");
   if (Status status = read_gltf_materials(*model, file, scene); !status) return status.error();
   const Result<NodePlacements> nodes = place_nodes(*model, file);
   if (!nodes) return nodes.error();

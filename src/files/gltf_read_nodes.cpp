@@ -100,7 +100,7 @@ Light convert_light(const tinygltf::Light& source, const glm::dmat4& world) {
   Light light;
   if (source.type == "spot") light.kind = LightKind::kSpot;
   if (source.type == "directional") light.kind = LightKind::kDirectional;
-  light.intensity = glm::max(vector_of(source.color, vec3(1)) * float(source.intensity), vec3(0));
+  light.intensity = vector_of(source.color, vec3(1)) * float(source.intensity);
   light.position = vec3(world[3]);
   light.direction = direction(world, {0, 0, -1}, vec3(0, 0, -1));
   light.outer_cone = std::clamp(float(source.spot.outerConeAngle), 0.0f, kPi / 2);

@@ -13,6 +13,7 @@
 
 #include "files/file_name.h"
 #include "files/gltf_read_container.h"
+#include "files/hdr_decode.h"
 #include "files/image_decode.h"
 #include "files/mesh_import.h"
 #include "math/colour.h"
@@ -80,6 +81,13 @@ Result<FloatImage> read_picture(const std::string& file) {
   if (!bytes) return bytes.error();
   const std::string extension = file_extension(file);
   if (extension == ".exr") return read_exr(file, nullptr);
+  if (is_radiance_picture(*bytes)) {
+    Result<FloatImage> picture = decode_radiance_picture(*bytes);
+    if (picture) return picture;
+    Error error = picture.error();
+    error.file = file;
+    return error;
+  }
   const Result<Image> encoded = decode_image(*bytes);
   if (!encoded) {
     Error error = encoded.error();

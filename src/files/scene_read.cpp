@@ -12,6 +12,7 @@
 #include "files/gltf_read.h"
 #include "files/gltf_read_container.h"
 #include "files/mesh_read.h"
+#include "scene/light_check.h"
 
 namespace goldthread {
 namespace {
@@ -24,9 +25,7 @@ bool starts_like_glb(const std::string& file) {
   return stream && std::memcmp(magic, "glTF", 4) == 0;
 }
 
-}  // namespace
-
-Result<Scene> read_scene(const std::string& file) {
+Result<Scene> read_any(const std::string& file) {
   std::error_code ignored;
   const auto kind = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(kind))
@@ -38,6 +37,14 @@ Result<Scene> read_scene(const std::string& file) {
     if (extension == known) return read_mesh_file(file);
   return bad_input(file, "", fmt::format("the extension \"{}\" is not supported", extension),
                    "use .gltf, .glb, .obj, .ply, .stl, .fbx or .dae");
+}
+
+}  // namespace
+
+Result<Scene> read_scene(const std::string& file) {
+  Result<Scene> scene = read_any(file);
+  if (scene) put_out_absurd_lights(*scene);
+  return scene;
 }
 
 }  // namespace goldthread

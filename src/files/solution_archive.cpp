@@ -116,6 +116,47 @@ class Unpacker {
   bool failed_ = false;
 };
 
+// A Sky as plain values: models and maps are made, not filled in.
+struct StoredSky {
+  enum class Kind : uint8_t { kUniform, kModel, kMap };
+  Kind kind = Kind::kUniform;
+  vec3 radiance{0};
+  SkyDescription model;
+  FloatImage picture;
+  float rotation = 0;
+};
+
+StoredSky store(const Sky& sky) {
+  StoredSky stored;
+  stored.radiance = sky.radiance;
+  if (sky.model) {
+    stored.kind = StoredSky::Kind::kModel;
+    stored.model = sky.model->description();
+  }
+  if (sky.map) {
+    stored.kind = StoredSky::Kind::kMap;
+    stored.picture = sky.map->picture();
+    stored.rotation = sky.map->rotation();
+  }
+  return stored;
+}
+
+// False for one that cannot be.
+bool restore(const StoredSky& stored, Sky& sky) {
+  sky = Sky();
+  sky.radiance = stored.radiance;
+  if (stored.kind == StoredSky::Kind::kModel) {
+    const Result<SkyModel> model = SkyModel::make(stored.model);
+    if (model) sky.model = *model;
+    return bool(model);
+  }
+  if (stored.kind != StoredSky::Kind::kMap) return stored.kind == StoredSky::Kind::kUniform;
+  EnvironmentMap::Repairs repairs;
+  const Result<EnvironmentMap> map = EnvironmentMap::make(stored.picture, 1, stored.rotation, &repairs);
+  if (map) sky.map = *map;
+  return map && repairs.pixels == 0;
+}
+
 template <typename V, typename T>
 concept Is = std::same_as<std::remove_const_t<V>, T>;
 
@@ -150,6 +191,19 @@ template <typename A, Is<Light> V>
 void fields(A& a, V& v) {
   a(v.name, v.kind, v.intensity, v.position, v.direction, v.inner_cone, v.outer_cone, v.range);
 }
+template <typename A, Is<SkyDescription> V>
+void fields(A& a, V& v) {
+  a(v.kind, v.cie_type, v.sun_direction, v.level.measure, v.level.value, v.turbidity, v.ground_reflectance,
+    v.sunlight);
+}
+template <typename A, Is<FloatImage> V>
+void fields(A& a, V& v) {
+  a(v.width, v.height, v.pixels);
+}
+template <typename A, Is<StoredSky> V>
+void fields(A& a, V& v) {
+  a(v.kind, v.radiance, v.model, v.picture, v.rotation);
+}
 template <typename A, Is<Camera> V>
 void fields(A& a, V& v) {
   a(v.name, v.position, v.forward, v.up, v.vertical_fov, v.orthographic_height, v.aspect);
@@ -160,11 +214,22 @@ void fields(A& a, V& v) {
     v.irradiance_back);
 }
 
+bool visit_sky(Packer& a, const Sky& sky) {
+  a(store(sky));
+  return true;
+}
+bool visit_sky(Unpacker& a, Sky& sky) {
+  StoredSky stored;
+  a(stored);
+  return a.finished() && restore(stored, sky);
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
   if (name == "report") return a(solution.report_json), true;
-  if (name == "scene") return a(scene.file, scene.sky.radiance, scene.warnings), true;
+  if (name == "scene") return a(scene.file, scene.warnings), true;
+  if (name == "sky") return visit_sky(a, scene.sky);
   if (name == "images") return a(scene.images), true;
   if (name == "materials") return a(scene.materials), true;
   if (name == "meshes") return a(scene.meshes), true;
@@ -178,7 +243,8 @@ bool visit_section(A& a, V& solution, const std::string& name) {
 }  // namespace
 
 std::vector<std::string> section_names() {
-  return {"report", "scene", "images", "materials", "meshes", "instances", "lights", "cameras", "lighting"};
+  return {"report", "scene",     "sky",    "images",  "materials",
+          "meshes", "instances", "lights", "cameras", "lighting"};
 }
 
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {

@@ -15,7 +15,7 @@ namespace goldthread {
 namespace {
 
 constexpr int kApplicationId = 0x676f6c64;  // "gold"
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2;
 constexpr size_t kPartBytes = size_t{64} << 20;  // far below SQLite's limit for one value
 constexpr const char* kCure = "bake the scene again";
 
@@ -174,7 +174,7 @@ Result<Solution> read_all(const std::string& file) {
     const Result<std::vector<uint8_t>> bytes = read_section(database.get(), file, name);
     if (!bytes) return bytes.error();
     if (!unpack_section(solution, name, *bytes))
-      return unreadable(file, name, "has a count that does not fit");
+      return unreadable(file, name, "has a count or a value that does not fit");
   }
   if (const std::string problem = find_contradiction(solution); !problem.empty())
     return unreadable(file, "", problem);

@@ -21,6 +21,7 @@
 #include "session/light_setup.h"
 #include "session/reference_points.h"
 #include "session/report.h"
+#include "session/requested_lights.h"
 #include "session/solve_session.h"
 #include "session/watched.h"
 #include "trace/preview.h"
@@ -176,7 +177,7 @@ Status Bake::load() {
   Result<Scene> scene = read_scene(options_.input);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  add_requested_lights(scene_, options_.sky, options_.sun);
+  if (Status status = add_requested_lights(scene_, options_); !status) return status;
   report_.warnings.insert(report_.warnings.end(), scene_.warnings.begin(), scene_.warnings.end());
   if (options_.fix_normals) report_.warnings.push_back(fix_scene_normals(scene_));
   std::erase(report_.warnings, std::string());

@@ -10,20 +10,6 @@
 
 namespace goldthread {
 
-void add_requested_lights(Scene& scene, const std::optional<std::array<float, 3>>& sky,
-                          const std::optional<BakeOptions::Sun>& sun) {
-  if (sky) scene.sky.radiance = {(*sky)[0], (*sky)[1], (*sky)[2]};
-  if (!sun) return;
-  const float elevation = sun->elevation * kPi / 180, azimuth = sun->azimuth * kPi / 180;
-  Light light;
-  light.name = "sun";
-  light.kind = LightKind::kDirectional;
-  light.intensity = vec3(sun->illuminance);
-  light.direction = -vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                          -std::cos(elevation) * std::cos(azimuth));
-  scene.lights.push_back(light);
-}
-
 uint64_t count_emitters(const SurfaceSet& surfaces) {
   uint64_t count = 0;
   for (const Part& part : surfaces.parts)

@@ -1,19 +1,12 @@
-// The lights a user asks for, and what is worth warning about before any light is computed.
+// What is worth knowing of a scene's light before any is computed.
 #pragma once
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "element/surface_set.h"
-#include "goldthread/bake.h"
 #include "scene/lighting.h"
 
 namespace goldthread {
-
-/// Adds --sky and --sun to the scene.
-void add_requested_lights(Scene& scene, const std::optional<std::array<float, 3>>& sky,
-                          const std::optional<BakeOptions::Sun>& sun);
 
 /// Whether anything gives light: a surface, a lamp, or the sky.
 bool has_light(const SurfaceSet& surfaces);

@@ -19,6 +19,7 @@
 #include "session/reference_options.h"
 #include "session/reference_picture.h"
 #include "session/reference_points.h"
+#include "session/requested_lights.h"
 #include "session/watched.h"
 #include "trace/reference_image.h"
 
@@ -105,7 +106,7 @@ Status Run::load() {
   Result<Scene> scene = read_scene(options_.input);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  add_requested_lights(scene_, options_.sky, options_.sun);
+  if (Status status = add_requested_lights(scene_, options_); !status) return status;
   result_.warnings = scene_.warnings;
   traced_ = std::make_unique<TracedScene>(scene_);
   if (traced_->triangles().empty())
@@ -155,7 +156,7 @@ Result<SavedEstimate> Run::resumed() const {
                  "was made of another scene, or under another light",
                  options_.resume_file,
                  {},
-                 "give the scene, --sky and --sun that it was made with"};
+                 "give the scene, sky and sun that it was made with"};
   if (options_.seed && *options_.seed != saved->seed)
     return usage_error(
         fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),
@@ -308,7 +309,7 @@ Status Run::resume_picture(ReferenceImageOptions& image_options) const {
                  "was made of another scene, under another light or by another camera",
                  options_.resume_file,
                  {},
-                 "give the scene, --sky and --sun that it was made with"};
+                 "give the scene, sky and sun that it was made with"};
   if (options_.seed && *options_.seed != saved->seed)
     return usage_error(
         fmt::format("--seed {} is not the seed that is resumed, {}", *options_.seed, saved->seed),

@@ -53,6 +53,14 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "-1")
         self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "1,2")
         self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "nan")
+        bake = ["bake", "x.glb", "-o", "y.glb"]
+        for wrong, *options in [["--place", "--place", "1,2"], ["--place", "--place", "1", "--date", "2026-01-02", "--time", "12:00"],
+                                ["--date", "--place", "1,2", "--date", "2026-1", "--time", "12:00"],
+                                ["--time", "--place", "1,2", "--date", "2026-01-02", "--time", "25:00"],
+                                ["--sky-model", "--place", "1,2", "--date", "2026-01-02", "--time", "12:00"],
+                                ["--environment", "--environment-scale", "2"],
+                                ["--sky-model", "--ground-reflectance", "0.2"]]:
+            self.assert_fails(2, [wrong], *bake, *options)
         self.assert_fails(2, ["--time-limit"], "bake", "x.glb", "-o", "y.glb", "--time-limit", "0")
         self.assert_fails(2, ["--picture-size"], "bake", "x.glb", "-o", "y.png", "--picture-size", "960x")
         self.assert_fails(2, ["--sun"], "bake", "x.glb", "-o", "y.glb", "--sun-azimuth", "10")
@@ -267,6 +275,18 @@ class CliTest(unittest.TestCase):
     def test_sun_stands_alone_before_the_scene(self):
         self.run_it("make", "cornell-box")
         done = self.run_it("bake", "--quality", "draft", "-o", "lit.glb", "--sun", "cornell-box.glb")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_reference_and_bake_know_the_same_sky(self):
+        self.path("ground.obj").write_text("v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\nf 1 3 4\n")
+        sky = ["--sky-model", "preetham", "--place", "59.33,18.07", "--date", "2026-06-21", "--time", "13:00",
+               "--time-zone", "2", "--sun", "--ground-reflectance", "0.2"]
+        done = self.run_it("bake", "ground.obj", "-o", "s.gold", "--quality", "draft", *sky)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_it("compare", "s.gold", "--reference", "--points", "200", "--samples", "256", "--json", "c.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(abs(json.loads(self.path("c.json").read_text())["bias"]), 0.005)
+        done = self.run_it("reference", "ground.obj", "--points", "100", "--samples", "64", "--json", "r.json", *sky)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_interrupted_bake_writes_what_there_is_and_is_130(self):

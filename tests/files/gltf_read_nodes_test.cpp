@@ -8,6 +8,8 @@ namespace goldthread {
 namespace {
 
 using namespace test;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr double kHalf = 0.7071067811865476;  ///< sine and cosine of 45 degrees: quarter turns as quaternions
 
@@ -120,6 +122,19 @@ TEST(GltfLights, PointLightKeepsCandelaUnderScale) {
   EXPECT_THAT(scene.lights[0].intensity, Near(vec3(200, 100, 0)));
   EXPECT_THAT(scene.lights[0].position, Near(vec3(1, 2, 3)));
   EXPECT_EQ(scene.lights[0].range, 9);
+}
+
+TEST(GltfLights, NegativeIntensityIsDarkAndNamed) {
+  const Scene scene = read_built(with_light({{"type", "point"}, {"name", "hole"}, {"intensity", -200}}, {}));
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].intensity, vec3(0));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("light 0 \"hole\": an intensity of -200")));
+}
+
+TEST(GltfLights, SurroundingsAreNamedAndLeftOut) {
+  GltfBuilder b = with_light({{"type", "point"}}, {});
+  b.doc["extensionsUsed"].push_back("EXT_lights_image_based");
+  EXPECT_THAT(read_built(b).warnings, ElementsAre(HasSubstr("--environment")));
 }
 
 TEST(GltfLights, SpotShinesAlongMinusZTurned) {

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "files/gltf_builder.h"
+#include "scene/small_skies.h"
 
 namespace goldthread {
 namespace {
@@ -190,6 +191,29 @@ TEST(SolutionFile, LeavesTheOldFileWhenItCannotWrite) {
     ASSERT_FALSE(status);
     EXPECT_EQ(status.error().code, ErrorCode::kCannotWrite);
     EXPECT_EQ(status.error().file, file);
+  }
+}
+
+TEST(SolutionFile, SkiesComeBack) {
+  TempFolder folder;
+  const std::string file = folder.path("sky.gold");
+  std::vector<std::pair<std::string, Sky>> skies = test::many_skies();
+  FloatImage picture = test::even_picture(6, 3, vec3(1, 2, 3));
+  picture.pixels[4] = vec3(70, 80, 90);
+  skies.emplace_back("picture", test::sky_of(picture, 2, 0.5f));
+  const Result<SkyModel> ground = SkyModel::overcast(SkyLevel::zenith_luminance(vec3(7)));
+  skies.emplace_back("ground", test::sky_of(ground->with_ground(vec3(0.1f), vec3(50))));
+  for (const auto& [name, sky] : skies) {
+    SCOPED_TRACE(name);
+    Solution solution;
+    solution.scene.sky = sky;
+    ASSERT_TRUE(write_solution(file, solution));
+    const Result<Solution> back = read_solution(file);
+    ASSERT_TRUE(back) << back.error().line();
+    for (int azimuth = 0; azimuth < 360; azimuth += 25)
+      for (int elevation = -80; elevation < 90; elevation += 20)
+        EXPECT_EQ(back->scene.sky.radiance_towards(test::towards(elevation, azimuth)),
+                  sky.radiance_towards(test::towards(elevation, azimuth)));
   }
 }
 

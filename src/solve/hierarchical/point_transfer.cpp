@@ -249,8 +249,9 @@ void add_surface(const ElementPool& pool, ElementId source, const vec3& x, const
 // A cell that the horizon does not cut brings exactly what its light is, however uneven; of what is cut, the
 // mean.
 vec3 sky_transfer(const SkyCell& cell, const vec3& n) {
-  const auto& [a, b, c] = cell.corners;
-  const bool whole = dot(a, n) >= 0 && dot(b, n) >= 0 && dot(c, n) >= 0;
+  bool whole = true;
+  for (const vec3& c : cell.corners)
+    whole = whole && dot(c, n) > -1e-4f;  // rounded normals cut next to nothing
   return whole && cell.unevenness > 0 ? cell.transfer : sky_form_factor(n, cell.corners);
 }
 

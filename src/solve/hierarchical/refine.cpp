@@ -223,10 +223,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   const double missed = unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
-  // What an uneven piece of sky brings may come from where none of few rays went: they say what is likely.
-  const double likely = s.kind == ElementKind::kSky ? unoccluded * (v * link.rays + 1) / (link.rays + 2.0)
-                                                    : static_cast<double>(link.mean);
-  error.source = 0.25 * range * likely * area;
+  error.source = 0.25 * range * static_cast<double>(link.mean) * area;
   if (link.visibility > 0 && link.visibility < 255 && (s.radius > r.radius || s.kind == ElementKind::kSky))
     error.source += b * area * unoccluded * v * (1 - v) * 0.25;
   return error;

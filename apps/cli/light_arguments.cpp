@@ -63,6 +63,16 @@ void add_sun(CLI::App& verb, LightTexts& texts) {
       ->type_name("DEG")
       ->check(CLI::Range(-360.0, 360.0).description(""))
       ->group(kGroup);
+  verb.add_option("--sun-diameter", texts.options.sun_diameter,
+                  "degrees of its disc, 0 for hard shadows (0.533)")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 90.0).description(""))
+      ->group(kGroup);
+  verb.add_option("--lamp-radius", texts.lamp_radius,
+                  "makes the scene's point and spot lights balls of M metres")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->group(kGroup);
   verb.add_option("--place", texts.place, "degrees north and east, as 59.33,18.07: places the sun")
       ->type_name("LAT,LON")
       ->group(kGroup);
@@ -144,6 +154,9 @@ Status finish_light(const CLI::App& verb, const LightTexts& texts, LightOptions&
   if (options.environment.empty() &&
       (verb.count("--environment-rotation") > 0 || verb.count("--environment-scale") > 0))
     return usage_error("there is no environment to turn or scale", "add --environment FILE");
+  if (verb.count("--sun-diameter") > 0 && verb.count("--sun") == 0)
+    return usage_error("the sun has a size but does not shine", "add --sun");
+  if (verb.count("--lamp-radius") > 0) options.lamp_radius = texts.lamp_radius;
   if (Status status = finish_moment(verb, texts, options); !status) return status;
   return finish_sun(verb, texts, options);
 }

@@ -16,6 +16,7 @@ namespace goldthread::cli {
 struct LightTexts {
   std::string sky, place, date, time;
   double time_zone = 0;
+  float lamp_radius = 0;
   LightOptions::Sun sun;
   bool lone_sun = false;  ///< --sun came without a number
   LightOptions options;   ///< those that need no more parsing

@@ -18,6 +18,7 @@ struct LightOptions {
     float elevation = 45, azimuth = 135;  ///< degrees; azimuth 0 is -Z, 90 is +X
   };
   std::optional<Sun> sun;
+  float sun_diameter = 0.533f;  ///< degrees, 0 to 90: of that sun's even disc; 0 for shadows without penumbra
   /// The sun sends what its height and `turbidity` leave of it (Preetham 1999, A.1) instead of `illuminance`.
   bool sun_through_air = false;
 
@@ -28,6 +29,9 @@ struct LightOptions {
     double hour = 12, time_zone = 0;  ///< hours; the zone's ahead of UTC
   };
   std::optional<Moment> moment;
+
+  std::optional<float>
+      lamp_radius;  ///< metres: makes the scene's point and spot lights balls, 0 points again
 
   /// uniform, overcast, clear, cie1 to cie15 or preetham; empty for none. Without `sky` as bright as the
   /// IES's mean sky of its kind with the sun at that height (Recommended Practice for the Calculation of

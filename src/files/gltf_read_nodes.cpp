@@ -106,6 +106,12 @@ Light convert_light(const tinygltf::Light& source, const glm::dmat4& world) {
   light.outer_cone = std::clamp(float(source.spot.outerConeAngle), 0.0f, kPi / 2);
   light.inner_cone = std::clamp(float(source.spot.innerConeAngle), 0.0f, light.outer_cone);
   light.range = std::max(float(source.range), 0.0f);
+  // The format has no word for a lamp's size; exporters that keep it write metres in the extras.
+  const double radius =
+      source.extras.IsObject() && source.extras.Has("radius") && source.extras.Get("radius").IsNumber()
+          ? source.extras.Get("radius").GetNumberAsDouble()
+          : 0;
+  if (light.kind != LightKind::kDirectional && radius > 0 && radius < 1e6) light.radius = float(radius);
   return light;
 }
 

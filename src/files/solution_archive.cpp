@@ -189,7 +189,8 @@ void fields(A& a, V& v) {
 }
 template <typename A, Is<Light> V>
 void fields(A& a, V& v) {
-  a(v.name, v.kind, v.intensity, v.position, v.direction, v.inner_cone, v.outer_cone, v.range);
+  a(v.name, v.kind, v.intensity, v.position, v.direction, v.inner_cone, v.outer_cone, v.range,
+    v.angular_diameter, v.radius);
 }
 template <typename A, Is<SkyDescription> V>
 void fields(A& a, V& v) {

@@ -16,7 +16,11 @@ struct Light {
   vec3 direction{0, 0, -1};  ///< world, unit: where the light shines to
   float inner_cone = 0;      ///< radians from the axis
   float outer_cone = 0.7853981634f;
-  float range = 0;  ///< metres, 0 for no limit
+  float range = 0;             ///< metres, 0 for no limit
+  float angular_diameter = 0;  ///< radians of a directional light's even disc; 0 for a point at infinity
+  /// Metres, of a point or spot light that is an even ball: its intensity is that of the whole, and what its
+  /// cone says holds for the way from its centre. 0 for a point; so it is taken for places within it, too.
+  float radius = 0;
 };
 
 }  // namespace goldthread

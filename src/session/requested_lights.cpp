@@ -128,10 +128,23 @@ Status check_one_sky(const LightOptions& options) {
   return Nothing{};
 }
 
+/// Gives lamps the radius that is asked for.
+Status set_sizes(Scene& scene, const LightOptions& options) {
+  if (!(options.sun_diameter >= 0 && options.sun_diameter <= 90))
+    return usage("the sun's diameter is not within 0 to 90 degrees", "it is 0.53 seen from Earth");
+  if (!options.lamp_radius) return Nothing{};
+  if (!(*options.lamp_radius >= 0 && *options.lamp_radius <= 1e6f))
+    return usage("the lamps' radius is no length", "give metres, 0 for points");
+  for (Light& light : scene.lights)
+    if (light.kind != LightKind::kDirectional) light.radius = *options.lamp_radius;
+  return Nothing{};
+}
+
 }  // namespace
 
 Status add_requested_lights(Scene& scene, const LightOptions& options) {
   if (Status status = check_one_sky(options); !status) return status;
+  if (Status status = set_sizes(scene, options); !status) return status;
   const Result<vec3> to_sun = direction_to_sun(options);
   if (!to_sun) return to_sun.error();
   if (!is_finite(*to_sun) ||
@@ -159,6 +172,7 @@ Status add_requested_lights(Scene& scene, const LightOptions& options) {
   light.kind = LightKind::kDirectional;
   light.intensity = *sunlight;
   light.direction = -*to_sun;
+  light.angular_diameter = options.sun_diameter * kPi / 180;
   scene.lights.push_back(light);
   return Nothing{};
 }

@@ -47,8 +47,30 @@ float Lamp::reach(float distance) const {
   return std::clamp(1 - squared * squared, 0.0f, 1.0f);
 }
 
+Lamp::View Lamp::view_from(const vec3& origin) const {
+  View view;
+  if (light_.kind == LightKind::kDirectional) {
+    view.axis = -light_.direction;
+    view.sine = std::sin(light_.angular_diameter / 2);
+    view.strength = 1;
+    return view;
+  }
+  const vec3 d = light_.position - origin;
+  view.distance = length(d);
+  if (!(view.distance > 0)) return view;
+  view.axis = d / view.distance;
+  view.sine = light_.radius < view.distance ? light_.radius / view.distance : 0.0f;
+  view.strength = cone(-view.axis) * reach(view.distance) / (view.distance * view.distance);
+  return view;
+}
+
 float Lamp::share_at(const vec3& origin, const vec3& normal) const {
-  if (light_.kind == LightKind::kDirectional) return std::max(0.0f, -dot(light_.direction, normal));
+  if (light_.kind == LightKind::kDirectional && !has_size())
+    return std::max(0.0f, -dot(light_.direction, normal));
+  if (has_size()) {
+    const View view = view_from(origin);
+    return view.strength * std::clamp(dot(view.axis, normal) + view.sine, 0.0f, 1.0f);
+  }
   const vec3 d = light_.position - origin;
   const float height = dot(d, normal);
   if (!(height > 0)) return 0;
@@ -56,22 +78,43 @@ float Lamp::share_at(const vec3& origin, const vec3& normal) const {
   return height * cone(-d / distance) * reach(distance) / (squared * distance);
 }
 
-LightSample Lamp::light_at(const vec3& origin, const vec3& normal) const {
+// Drawn evenly over the disc as a plane facing it sees it, with density cos / (pi sin^2) to its axis, a disc
+// that brings E to that plane brings E cos_n / cos to one of normal n.
+LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p) const {
   LightSample light;
-  light.irradiance = light_.intensity * share_at(origin, normal);
   light.shadow.origin = origin;
-  if (light_.kind == LightKind::kDirectional) {
+  const View view = view_from(origin);
+  if (!has_size() || !(view.sine > 0)) {
+    const float cosine =
+        has_size() ? view.strength * std::max(0.0f, dot(view.axis, normal)) : share_at(origin, normal);
+    light.irradiance = light_.intensity * cosine;
     light.shadow.direction = -light_.direction;
-  } else {
+    if (light_.kind == LightKind::kDirectional) return light;
     light.shadow.direction = light_.position - origin;
     light.shadow.far = 0.9999f;  // a lamp may be fixed to a surface
+    return light;
   }
+  const float aside = view.sine * std::sqrt(static_cast<float>(unit_double(p.u)));
+  const float turn = 2 * kPi * static_cast<float>(unit_double(p.v));
+  const vec3 across = normalize(std::abs(view.axis.x) > 0.6f ? vec3(view.axis.y, -view.axis.x, 0)
+                                                             : vec3(0, view.axis.z, -view.axis.y));
+  const float along = std::sqrt(1 - aside * aside);
+  const vec3 way =
+      along * view.axis + aside * (std::cos(turn) * across + std::sin(turn) * cross(view.axis, across));
+  light.irradiance = light_.intensity * (view.strength * std::max(0.0f, dot(way, normal)) / along);
+  light.shadow.direction = way;
+  if (light_.kind == LightKind::kDirectional) return light;
+  // Ends where it meets the ball.
+  const float half_chord = std::sqrt(std::max(0.0f, view.sine * view.sine - aside * aside));
+  light.shadow.direction = way * (view.distance * (along - half_chord));
+  light.shadow.far = 0.9999f;
   return light;
 }
 
 LightSampler::LightSampler(const TracedScene& scene) : scene_(scene), emitters_(scene) {
   for (const Light& lamp : scene.scene().lights)
     if (luminance(lamp.intensity) > 0) lamps_.emplace_back(lamp);
+  for (const Lamp& lamp : lamps_) lamps_with_size_ = lamps_with_size_ || lamp.has_size();
   const Sky& sky = scene.scene().sky;
   if (sky.present() && !sky.is_uniform()) sky_table_.emplace(sky);
 }
@@ -124,7 +167,7 @@ float LightSampler::sky_density(const vec3& direction, float cosine) const {
   return has_sky() ? cosine / kPi : 0.0f;
 }
 
-LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, double u,
+LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, double u, SobolPoint p,
                                       std::span<float> sums) const {
   float total = 0;
   for (size_t i = 0; i < lamps_.size(); ++i) {
@@ -137,7 +180,7 @@ LightSample LightSampler::sample_lamp(const vec3& origin, const vec3& normal, do
   size_t chosen = 0;
   while (chosen + 1 < lamps_.size() && sums[chosen] <= wanted && sums[chosen] < total) ++chosen;
   const float before = chosen > 0 ? sums[chosen - 1] : 0.0f;
-  LightSample light = lamps_[chosen].light_at(origin, normal);
+  LightSample light = lamps_[chosen].light_at(origin, normal, p);
   light.irradiance *= total / (sums[chosen] - before);
   return light;
 }

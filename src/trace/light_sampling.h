@@ -33,19 +33,29 @@ inline float power_heuristic(float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// A point, spot or directional light, with what its cone needs of sines and cosines worked out.
+/// A point, spot or directional light, with what its cone needs of sines and cosines worked out. From a place
+/// it is a disc of directions of one luminance, or, without size, one direction.
 class Lamp {
  public:
   explicit Lamp(const Light& light);
 
   /// Share of the intensity that it brings to a plane of unit `normal` unless something is in between, 1/m2;
-  /// of the illuminance, if it is directional.
+  /// of the illuminance, if it is directional. Of a lamp with size more than that: all that it could, were
+  /// its disc as high above the plane as any of it is.
   float share_at(const vec3& origin, const vec3& normal) const;
-  /// The same as light, and the way there.
-  LightSample light_at(const vec3& origin, const vec3& normal) const;
+  /// Light from one direction of the disc, and the way there. `p` counts only for a lamp with size.
+  LightSample light_at(const vec3& origin, const vec3& normal, SobolPoint p) const;
   float brightness() const { return brightness_; }  ///< luminance of the intensity
+  bool has_size() const { return light_.angular_diameter > 0 || light_.radius > 0; }
 
  private:
+  struct View {
+    vec3 axis{0};        // unit, to the lamp's centre
+    float distance = 0;  // metres; 0 for a directional light
+    float sine = 0;      // of the disc's angular radius
+    float strength = 0;  // share of the intensity on a plane that faces the lamp, 1/m2
+  };
+  View view_from(const vec3& origin) const;
   float cone(const vec3& d) const;
   float reach(float distance) const;
 
@@ -62,6 +72,7 @@ class LightSampler {
   bool has_sky() const { return scene_.scene().sky.present(); }
   bool has_lamps() const { return !lamps_.empty(); }
   size_t lamp_count() const { return lamps_.size(); }
+  bool has_lamps_with_size() const { return lamps_with_size_; }
 
   /// One point of one emitting triangle, drawn by power. `origin` is off its surface already; `normal` is
   /// unit.
@@ -69,9 +80,10 @@ class LightSampler {
   /// One direction to the sky: of a uniform one by the cosine, which alone is worth following; else by
   /// luminance.
   LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  /// One point, spot or directional light, drawn by what it would bring were nothing in between. `sums` is
-  /// room to work in, lamp_count() long.
-  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u, std::span<float> sums) const;
+  /// One point, spot or directional light, drawn by what it would bring were nothing in between, and of one
+  /// with size a direction. `sums` is room to work in, lamp_count() long.
+  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u, SobolPoint p,
+                          std::span<float> sums) const;
 
   /// Density, 1/sr, with which sample_emitter takes the direction in which a ray has met an emitter after
   /// `distance` metres at the given cosine between ray and normal.
@@ -84,6 +96,7 @@ class LightSampler {
   EmitterTable emitters_;
   std::optional<SkyTable> sky_table_;  ///< of a sky that is not uniform
   std::vector<Lamp> lamps_;            ///< those that shine
+  bool lamps_with_size_ = false;
 };
 
 }  // namespace goldthread

@@ -83,7 +83,7 @@ class Bundle {
   }
   void ask_emitters(uint32_t& pair);
   void ask_sky(uint32_t& pair);
-  void ask_lamps();
+  void ask_lamps(uint32_t& pair);
   void ask(const Path& path, const LightSample& light);
   void collect(std::span<vec3> sums);
   void send_on(uint32_t& pair);
@@ -133,7 +133,7 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
     promises_.clear();
     if (lights_.has_emitters()) ask_emitters(pair);
     if (lights_.has_sky()) ask_sky(pair);
-    if (lights_.has_lamps()) ask_lamps();
+    if (lights_.has_lamps()) ask_lamps(pair);
     collect(sums);
     send_on(pair);
     bounce(sure, sums);
@@ -152,10 +152,12 @@ void Bundle::ask_sky(uint32_t& pair) {
     ask(paths_[i], lights_.sample_sky(paths_[i].point, paths_[i].normal, points_[i]));
 }
 
-void Bundle::ask_lamps() {
+void Bundle::ask_lamps(uint32_t& pair) {
+  const bool sized = lights_.has_lamps_with_size();
+  if (sized) draw(pair, points_);
   for (size_t i = 0; i < paths_.size(); ++i)
-    ask(paths_[i],
-        lights_.sample_lamp(paths_[i].point, paths_[i].normal, unit_double(choices_[i].u), lamp_sums_));
+    ask(paths_[i], lights_.sample_lamp(paths_[i].point, paths_[i].normal, unit_double(choices_[i].u),
+                                       sized ? points_[i] : SobolPoint(), lamp_sums_));
 }
 
 void Bundle::ask(const Path& path, const LightSample& light) {

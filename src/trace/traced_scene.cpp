@@ -90,6 +90,7 @@ void add_light(Fingerprint& print, const Light& light) {
   print.add(light.position);
   print.add(light.direction);
   print.add(vec3(light.inner_cone, light.outer_cone, light.range));
+  print.add(vec2(light.angular_diameter, light.radius));
 }
 
 void add_sky(Fingerprint& print, const Sky& sky) {

@@ -131,6 +131,15 @@ TEST(GltfLights, NegativeIntensityIsDarkAndNamed) {
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("light 0 \"hole\": an intensity of -200")));
 }
 
+TEST(GltfLights, RadiusComesFromTheExtras) {
+  const auto radius = [](const json& light) { return read_built(with_light(light, {})).lights.at(0).radius; };
+  EXPECT_FLOAT_EQ(radius({{"type", "point"}, {"extras", {{"radius", 0.05}}}}), 0.05f);
+  EXPECT_EQ(radius({{"type", "point"}, {"extras", {{"radius", -1}}}}), 0);
+  EXPECT_EQ(radius({{"type", "point"}, {"extras", {{"radius", "large"}}}}), 0);
+  EXPECT_EQ(radius({{"type", "directional"}, {"extras", {{"radius", 3}}}}), 0);
+  EXPECT_EQ(radius({{"type", "point"}}), 0);
+}
+
 TEST(GltfLights, SurroundingsAreNamedAndLeftOut) {
   GltfBuilder b = with_light({{"type", "point"}}, {});
   b.doc["extensionsUsed"].push_back("EXT_lights_image_based");

@@ -49,7 +49,8 @@ Solution full_solution() {
   instance.source_node = 9;
   instance.name = "node";
   s.scene.instances = {instance};
-  s.scene.lights = {{"l", LightKind::kSpot, vec3(1, 2, 3), vec3(4), vec3(0, 0, 1), 0.1f, 0.2f, 5}};
+  s.scene.lights = {
+      {"l", LightKind::kSpot, vec3(1, 2, 3), vec3(4), vec3(0, 0, 1), 0.1f, 0.2f, 5, 0.3f, 0.4f}};
   s.scene.cameras = {{"c", vec3(1), vec3(0, 1, 0), vec3(0, 0, 1), 0.5f, 2, 1.5f}};
   LitPrimitive lit;
   lit.source_mesh = false;
@@ -99,6 +100,8 @@ TEST(SolutionFile, ComesBackWhole) {
   EXPECT_EQ(scene.instances[0].transform, before.scene.instances[0].transform);
   EXPECT_EQ(scene.lights[0].kind, LightKind::kSpot);
   EXPECT_EQ(scene.lights[0].range, 5);
+  EXPECT_EQ(scene.lights[0].angular_diameter, 0.3f);
+  EXPECT_EQ(scene.lights[0].radius, 0.4f);
   EXPECT_EQ(scene.cameras[0].aspect, 1.5f);
   EXPECT_EQ(after->lighting.revision, 3u);
   EXPECT_EQ(after->lighting.primitives[0].faces, before.lighting.primitives[0].faces);

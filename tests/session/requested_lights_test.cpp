@@ -98,6 +98,26 @@ TEST(RequestedLights, PlaceAndTimePlaceTheSun) {
   EXPECT_THAT(night.warnings[0], HasSubstr("below the horizon"));
 }
 
+TEST(RequestedLights, SunHasItsDiscAndLampsTheRadiusThatIsAskedFor) {
+  LightOptions options;
+  options.sun = LightOptions::Sun{};
+  EXPECT_NEAR(lit(options).lights[0].angular_diameter, 0.533f * kPi / 180, 1e-6f);
+  options.sun_diameter = 0;
+  EXPECT_EQ(lit(options).lights[0].angular_diameter, 0);
+  Scene scene;
+  scene.lights.resize(2);
+  scene.lights[1].kind = LightKind::kDirectional;
+  options.lamp_radius = 0.2f;
+  ASSERT_TRUE(add_requested_lights(scene, options));
+  EXPECT_EQ(scene.lights[0].radius, 0.2f);
+  EXPECT_EQ(scene.lights[1].radius, 0);
+  options.lamp_radius = -1.0f;
+  EXPECT_THAT(error_of(options), HasSubstr("radius"));
+  options.lamp_radius.reset();
+  options.sun_diameter = 200;
+  EXPECT_THAT(error_of(options), HasSubstr("diameter"));
+}
+
 TEST(RequestedLights, GroundReflectsSkyAndSun) {
   LightOptions options = model("uniform");
   options.sky = {1000, 1000, 1000};

@@ -177,19 +177,19 @@ TEST(LightSampling, LampsAreDrawnByWhatTheyBring) {
   std::vector<float> sums(lights.lamp_count());
   std::vector<int> drawn(lights.lamp_count(), 0);
   float whole = 0;
-  for (const Light& light : t.scene->lights) whole += Lamp(light).light_at(vec3(0), up).irradiance.x;
+  for (const Light& light : t.scene->lights) whole += Lamp(light).light_at(vec3(0), up, point(0)).irradiance.x;
   constexpr int kCount = 10000;
   for (int i = 0; i < kCount; ++i) {
-    const LightSample light = lights.sample_lamp(vec3(0), up, (i + 0.5) / kCount, sums);
+    const LightSample light = lights.sample_lamp(vec3(0), up, (i + 0.5) / kCount, point(0), sums);
     EXPECT_NEAR(light.irradiance.x, whole, 1e-5f * whole);
     ++drawn[size_t(std::lround(light.shadow.direction.x))];
     EXPECT_GT(light.shadow.direction.z, 0);
   }
   for (size_t i = 0; i < 5; ++i) {
-    const float brings = Lamp(t.scene->lights[i]).light_at(vec3(0), up).irradiance.x;
+    const float brings = Lamp(t.scene->lights[i]).light_at(vec3(0), up, point(0)).irradiance.x;
     EXPECT_NEAR(drawn[i], kCount * double(brings / whole), 1.5) << i;
   }
-  EXPECT_EQ(lights.sample_lamp(vec3(0), -up, 0.999999, sums).shadow.direction.z, -2);
+  EXPECT_EQ(lights.sample_lamp(vec3(0), -up, 0.999999, point(0), sums).shadow.direction.z, -2);
 }
 
 }  // namespace

@@ -196,16 +196,52 @@ vec3 volume_transfer(const ElementPool& pool, ElementId source, const vec3& x, c
   return sum;
 }
 
+// A vector whose product with n is `irradiance`: along the way to the light where n faces it.
+vec3 towards_disc(const LightDisc& disc, const vec3& n, float irradiance) {
+  const float cosine = dot(disc.axis, n);
+  return cosine > disc.sine ? disc.axis * (irradiance / cosine) : n * irradiance;
+}
+
 vec3 point_light_transfer(const Light& light, const vec3& x, const vec3& n) {
   const vec3 d = light.position - x;
   const float squared = dot(d, d);
   const float distance = std::sqrt(squared);
-  if (dot(d, n) <= 0 || squared <= 0) return vec3(0);
+  if (squared <= 0) return vec3(0);
+  const LightDisc disc = light_disc(light, x);
+  if (disc.sine <= 0 && dot(d, n) <= 0) return vec3(0);
   const float factor = light_distribution(light, -d / distance) * light_range_factor(light, distance);
+  if (disc.sine > 0) return towards_disc(disc, n, disc_cosine(disc, n) * factor / squared);
   return d * (factor / (squared * distance));
 }
 
+vec3 sun_transfer(const Light& light, const vec3& x, const vec3& n) {
+  const LightDisc disc = light_disc(light, x);
+  if (disc.sine > 0) return towards_disc(disc, n, disc_cosine(disc, n));
+  return dot(disc.axis, n) > 0 ? disc.axis : vec3(0);
+}
+
 }  // namespace
+
+LightDisc light_disc(const Light& light, const vec3& x) {
+  if (light.kind == LightKind::kDirectional)
+    return {-light.direction, 0, std::sin(light.angular_diameter / 2)};
+  const vec3 d = light.position - x;
+  const float distance = length(d);
+  return {normalize_or(d, vec3(0, 1, 0)), distance, light.radius < distance ? light.radius / distance : 0.0f};
+}
+
+float disc_cosine(const LightDisc& disc, const vec3& n) {
+  const float cosine = std::clamp(dot(disc.axis, n), -1.0f, 1.0f);
+  if (cosine >= disc.sine) return cosine;
+  if (cosine <= -disc.sine) return 0;
+  // Here sigma is the disc's angular radius, theta the angle between axis and normal.
+  const double sine_squared = static_cast<double>(disc.sine * disc.sine);
+  const double cos_theta = static_cast<double>(cosine), sin_theta = std::sqrt(1 - cos_theta * cos_theta);
+  const double x = std::sqrt(1 / sine_squared - 1);
+  const double y = std::clamp(-x * cos_theta / sin_theta, -1.0, 1.0), root = sin_theta * std::sqrt(1 - y * y);
+  const double factor = (cos_theta * std::acos(y) - x * root) * sine_squared + std::atan2(root, x);
+  return static_cast<float>(std::max(0.0, factor) / (sine_squared * static_cast<double>(kPi)));
+}
 
 float light_distribution(const Light& light, const vec3& d) {
   if (light.kind != LightKind::kSpot) return 1;
@@ -270,10 +306,8 @@ vec3 transfer_of_kind(const ElementPool& pool, ElementId source, const vec3& x, 
       return sky_transfer(pool.sky_cell(source), n);
     case ElementKind::kPoint:
       return point_light_transfer(pool.light(source), x, n);
-    case ElementKind::kSun: {
-      const vec3 to_light = -pool.light(source).direction;
-      return dot(to_light, n) > 0 ? to_light : vec3(0);
-    }
+    case ElementKind::kSun:
+      return sun_transfer(pool.light(source), x, n);
   }
   return vec3(0);
 }

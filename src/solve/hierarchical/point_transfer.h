@@ -45,6 +45,19 @@ constexpr float kLampTolerance = 2e-5f;
 /// slower than the transfer.
 double point_transfer_error_bound(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n);
 
+/// A lamp's or the sun's disc as a point sees it.
+struct LightDisc {
+  vec3 axis{0};        ///< unit, to its middle
+  float distance = 0;  ///< metres; 0 for the sun
+  float sine = 0;      ///< of its angular radius; 0 for lights without size, and of places within the lamp
+};
+LightDisc light_disc(const Light& light, const vec3& x);
+
+/// What an even disc that brings 1 to a plane facing it brings to one of unit normal `n`, whose horizon may cut
+/// it: the cosine, or, cut, the closed form for a ball partly below the horizon (S. Lagarde and C. de Rousiers,
+/// Moving Frostbite to Physically Based Rendering, 2014, sphere lights).
+float disc_cosine(const LightDisc& disc, const vec3& n);
+
 /// Share of a point or spot light's intensity that goes in unit direction `d` (KHR_lights_punctual's cone
 /// falloff).
 float light_distribution(const Light& light, const vec3& d);

@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "math/form_factor.h"
 #include "math/spherical_triangle.h"
+#include "solve/hierarchical/point_transfer.h"
 
 namespace goldthread {
 namespace {
@@ -109,6 +110,38 @@ struct SourceSampler {
 
 constexpr uint32_t kPacket = 16, kLooked = 8;
 
+// Share of a light's disc seen from `origin`, by a packet of rays spread evenly over it; of what is above the
+// horizon.
+float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& origin, const vec3& n,
+                    uint32_t turn, RayCount& count) {
+  const vec3 across = normalize(std::abs(disc.axis.x) > 0.6f ? vec3(disc.axis.y, -disc.axis.x, 0)
+                                                             : vec3(0, disc.axis.z, -disc.axis.y));
+  const vec3 up = cross(disc.axis, across);
+  std::array<Ray, kPacket> rays;
+  std::array<float, kPacket> weight, passing;
+  uint32_t size = 0;
+  float all = 0, seen = 0;
+  for (uint32_t i = 0; i < kPacket; ++i) {
+    const UnitSquarePoint uv = r2_point(i, turn);
+    const float aside = disc.sine * std::sqrt(uv.u), along = std::sqrt(1 - aside * aside);
+    const vec3 way =
+        along * disc.axis + aside * (std::cos(2 * kPi * uv.v) * across + std::sin(2 * kPi * uv.v) * up);
+    weight[size] = dot(way, n) / along;
+    if (!(weight[size] > 0)) continue;
+    rays[size] = {origin, way};
+    if (disc.distance > 0) {  // to where it meets the ball
+      rays[size].direction *=
+          disc.distance * (along - std::sqrt(std::max(0.0f, disc.sine * disc.sine - aside * aside)));
+      rays[size].far = 0.9999f;
+    }
+    all += weight[size++];
+  }
+  if (size == 0) return 0;
+  timed_packet(caster, {rays.data(), size}, {passing.data(), size}, count);
+  for (uint32_t k = 0; k < size; ++k) seen += weight[k] * passing[k];
+  return seen / all;
+}
+
 }  // namespace
 
 SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
@@ -167,7 +200,9 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
-    Ray ray{origin, -pool.surfaces().scene->lights[e.shape].direction};
+    const LightDisc disc = light_disc(pool.light(source), x);
+    if (disc.sine > 0) return disc_fraction(*caster, disc, origin, n, hash(turn ^ seed, source), count);
+    Ray ray{origin, -pool.light(source).direction};
     if (e.kind == ElementKind::kPoint) {
       ray.direction = e.centre - origin;
       ray.far = 0.9999f;

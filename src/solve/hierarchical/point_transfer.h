@@ -53,9 +53,9 @@ struct LightDisc {
 };
 LightDisc light_disc(const Light& light, const vec3& x);
 
-/// What an even disc that brings 1 to a plane facing it brings to one of unit normal `n`, whose horizon may cut
-/// it: the cosine, or, cut, the closed form for a ball partly below the horizon (S. Lagarde and C. de Rousiers,
-/// Moving Frostbite to Physically Based Rendering, 2014, sphere lights).
+/// What an even disc that brings 1 to a plane facing it brings to one of unit normal `n`, whose horizon may
+/// cut it: the cosine, or, cut, the closed form for a ball partly below the horizon (S. Lagarde and C. de
+/// Rousiers, Moving Frostbite to Physically Based Rendering, 2014, sphere lights).
 float disc_cosine(const LightDisc& disc, const vec3& n);
 
 /// Share of a point or spot light's intensity that goes in unit direction `d` (KHR_lights_punctual's cone

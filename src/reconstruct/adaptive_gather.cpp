@@ -26,8 +26,10 @@ constexpr double kInterpolation = 0.4;
 // The scene is tested at no fewer places than this, spread by area; a leaf at no more than the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
+// Faces of a leaf among which places are chosen.
+constexpr uint32_t kMostFaces = 64;
 // How often leaves that seem right are tested at other places before they are believed.
-constexpr int kLooks = 2;
+constexpr int kLooks = 3;
 // A vertex is gathered again when the faces around it have become this much smaller.
 constexpr float kDrawnInAgain = 0.25f;
 
@@ -81,6 +83,8 @@ AdaptiveGather::AdaptiveGather(HierarchicalSolver& solver, const ReconstructOpti
       gather_{options.light_rays, options.ray_share},
       shown_(settle_outliers(solver, options, cancel, stats)),
       solved_elements_(solver.pool().size()) {
+  for (size_t id = 0; id < shown_.shown.size(); ++id)
+    shown_.low[id] = shown_.high[id] = largest(shown_.shown[id]);
   const SurfaceSet& set = solver.pool().surfaces();
   parts_.resize(set.parts.size());
   for (uint32_t p = 0; p < set.parts.size(); ++p) {
@@ -97,8 +101,9 @@ void AdaptiveGather::run() {
     test_leaves(false);
     if (cancel_.cancelled()) return;
     // What is left are the leaves whose places happened to agree with their corners: other places tell.
+    if (first_gathers_ == 0) first_gathers_ = gathers();
     if (!cut()) {
-      if (looks++ == kLooks) return;
+      if (is_spent() || looks++ == kLooks) return;
       test_leaves(true);
       if (cancel_.cancelled() || !cut()) return;
     }
@@ -293,7 +298,10 @@ AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_are
           (errors_[test.leaf].looks == 0 ? 1 : 2) +
       0.5);
   FaceTriangles triangles;
-  for (uint32_t f = 0; f < test.faces; ++f) triangles.add(lit.points, leaf_faces_[test.first_face + f]);
+  // Of very many faces some, another choice each time.
+  const uint32_t step = 1 + test.faces / kMostFaces;
+  for (uint32_t f = hash(test.leaf, errors_[test.leaf].looks) % step; f < test.faces; f += step)
+    triangles.add(lit.points, leaf_faces_[test.first_face + f]);
   if (triangles.up_to.empty() || !(triangles.up_to.back() > 0)) return error;
   const uint32_t pattern = hash(test.leaf, 81 + errors_[test.leaf].looks);
   for (uint32_t i = 0; i < places; ++i) {
@@ -353,6 +361,7 @@ void AdaptiveGather::test_leaves(bool again) {
       },
       16);
   stats_.rays += {rays.load(), nanoseconds.load()};
+  for (const Test& test : tests) places_tested_ += errors_[test.leaf].tests;
 }
 
 // Cuts the leaves that are most wrong, until what is left is allowed. False when there are none.
@@ -389,7 +398,7 @@ bool AdaptiveGather::cut() {
   std::sort(worst.begin(), worst.end(), [&](ElementId a, ElementId b) {
     return regarded[a] > regarded[b] || (regarded[a] == regarded[b] && a < b);
   });
-  if (squares <= allowed) return false;
+  if (squares <= allowed || is_spent()) return false;
   size_t count = 0;
   while (count < worst.size() && squares > kLeft * allowed) squares -= regarded[worst[count++]];
   worst.resize(count);
@@ -426,9 +435,11 @@ void AdaptiveGather::show_leaves() {
   for (ElementId id = static_cast<ElementId>(pool.size()); id-- > 0;) {
     const ElementId a = pool[id].first_child;
     if (a == kNoElement || !is_surface(pool[id].kind)) continue;
+    // Of a leaf that the solver has cut at a box's foot, the mean over what lies under the box and beside it
+    // is no better than its parent's by openness: only what was gathered here is worth telling apart.
+    if (id < solved_elements_ && cut_[id] == 0) continue;
     shown_.low[id] = std::min(shown_.low[a], shown_.low[a + 1]);
     shown_.high[id] = std::max(shown_.high[a], shown_.high[a + 1]);
-    if (id < solved_elements_ && cut_[id] == 0) continue;
     const float total = pool[a].area + pool[a + 1].area;
     const float share = total > 0 ? pool[a].area / total : 0.5f;
     shown_.shown[id] = share * shown_.shown[a] + (1 - share) * shown_.shown[a + 1];

@@ -80,6 +80,10 @@ class AdaptiveGather {
   std::vector<Test> list_tests(bool again);
   LeafError test(const Test& test, double unit_area, RayCount& count) const;
   void test_leaves(bool again);
+  uint64_t gathers() const { return stats_.points + places_tested_; }
+  bool is_spent() const {
+    return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
+  }
   bool cut();
   void show_leaves();
 
@@ -93,7 +97,8 @@ class AdaptiveGather {
   std::vector<uint32_t> leaf_faces_;  // faces of the leaves being tested
   std::vector<LeafError> errors_;     // by element; area 0: not tested
   size_t solved_elements_ = 0;        // those that the solver knows
-  std::vector<uint8_t> cut_;          // by element: the solver's leaves that were cut here
+  uint64_t places_tested_ = 0, first_gathers_ = 0;
+  std::vector<uint8_t> cut_;  // by element: the solver's leaves that were cut here
 };
 
 }  // namespace goldthread

@@ -74,7 +74,9 @@ std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver,
                                                const ReconstructOptions& options, const CancelToken& cancel,
                                                ReconstructStats& stats) {
   const PlaceFinder finder(solver.pool());
-  const ShownLight shown = settle_outliers(solver, options, cancel, stats);
+  ShownLight shown = settle_outliers(solver, options, cancel, stats);
+  for (size_t id = 0; id < shown.shown.size(); ++id)
+    shown.low[id] = shown.high[id] = largest(shown.shown[id]);
   // Places are few, and somebody asks for just these.
   const GatherOptions gather{std::max(options.light_rays, kPlaceRays),
                              std::min(options.ray_share, kPlaceShare)};

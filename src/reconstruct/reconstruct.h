@@ -10,7 +10,8 @@ struct ReconstructOptions {
   uint32_t light_rays = 128;  ///< shadow rays for a link that brings all of a vertex's light; less pro rata
   float ray_share =
       0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
-  double error = 0.06;       ///< root mean square by area of what lies between vertices, over mean light
+  double error = 0.06;  ///< root mean square by area of what lies between vertices, over mean light
+  double growth = 3;  ///< no more is cut once so many times the work of the solver's own leaves has been done
   double least_area = 5e-7;  ///< nothing is cut below this share of the scene's area
 };
 

@@ -48,17 +48,17 @@ Effort effort_for(Quality quality) {
       effort.reconstruct.light_rays = 32;
       effort.reconstruct.ray_share = 0.03f;
       effort.reconstruct.error = 0.15;
+      effort.reconstruct.growth = 2;
       effort.reconstruct.least_area = 2e-6;
       break;
     case Quality::kMedium:
       effort.solve.last_error = 1e-5;
       effort.solve.least_area = 1.2e-5;
-      effort.reconstruct.light_rays = 64;
       break;
     case Quality::kHigh:
       effort.solve.last_error = 3e-6;
       effort.solve.least_area = 6e-6;
-      effort.reconstruct.light_rays = 128;
+      effort.reconstruct.light_rays = 256;
       effort.reconstruct.ray_share = 0.005f;
       effort.reconstruct.error = 0.03;
       break;
@@ -68,6 +68,7 @@ Effort effort_for(Quality quality) {
       effort.reconstruct.light_rays = 256;
       effort.reconstruct.ray_share = 0.002f;
       effort.reconstruct.error = 0.015;
+      effort.reconstruct.growth = 5;
       break;
   }
   return effort;
@@ -313,6 +314,7 @@ void Bake::reconstruct_light() {
   });
   lighting_.revision = 1;
   report_.solver.reconstruct_rays = stats.rays.rays;
+  report_.solver.interpolation_error = stats.error;
   report_.seconds.reconstruct = since(begin);
 }
 

@@ -41,7 +41,8 @@ std::string BakeReport::json() const {
                  {"ray_time_share", solver.ray_time_share},
                  {"iterations", solver.iterations},
                  {"epsilon", solver.epsilon},
-                 {"error_estimate", solver.error_estimate}};
+                 {"error_estimate", solver.error_estimate},
+                 {"interpolation_error", solver.interpolation_error}};
   j["power_lm"] = {{"emitted", power.emitted},
                    {"absorbed", power.absorbed},
                    {"escaped", power.escaped},

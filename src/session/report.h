@@ -27,6 +27,7 @@ struct BakeReport {
     double ray_time_share = 0;
     uint64_t iterations = 0;
     double epsilon = 0, error_estimate = 0;
+    double interpolation_error = 0;  ///< of light between vertices: root mean square over the mean
   } solver;
   PowerBalance power;
   struct {

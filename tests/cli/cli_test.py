@@ -48,6 +48,8 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["x.txt", ".glb"], "make", "furnace", "-o", "x.txt")
         self.assert_fails(2, ["--triangles"], "make", "car", "--triangles", "many")
         self.assert_fails(2, ["-o"], "bake", "x.glb")
+        self.assert_fails(2, ["--points", "--json"], "bake", "x.glb", "-o", "y.glb", "--points", "places.json")
+        self.assert_fails(2, ["--points", "--json"], "bake", "x.glb", "-o", "y.glb", "--json", "light.json")
         self.assert_fails(2, ["--quality"], "bake", "x.glb", "-o", "y.glb", "--quality", "best")
         self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "2X")
         self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "-1")
@@ -128,6 +130,22 @@ class CliTest(unittest.TestCase):
         self.assertGreater(json.loads(self.path("r.json").read_text())["power_lm"]["emitted"], 0)
         quiet = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "--quality", "draft", "--quiet")
         self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    def test_bake_tells_the_light_at_points(self):
+        self.run_it("make", "furnace")
+        self.path("places.json").write_text('[{"point": [0.25, -0.5, 0.125], "normal": [0, 1, 0]},'
+                                            ' {"point": [-0.5, 0.125, 0.25], "normal": [1, 0, 0]}]')
+        done = self.run_it("bake", "furnace.glb", "--points", "places.json", "--json", "-", "--quality", "draft")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        points = json.loads(done.stdout)["points"]
+        self.assertEqual([p["point"] for p in points], [[0.25, -0.5, 0.125], [-0.5, 0.125, 0.25]])
+        for point in points:
+            for channel in point["irradiance"]:
+                self.assertAlmostEqual(channel, 2, delta=0.02)
+        self.path("places.json").write_text('[{"point": [9, 9, 9], "normal": [0, 1, 0]}]')
+        self.assert_fails(3, ["places.json", "point 0"], "bake", "furnace.glb", "--points", "places.json",
+                          "--json", "light.json")
+        self.assertFalse(self.path("light.json").exists())
 
     def test_compare(self):
         self.run_it("make", "furnace")

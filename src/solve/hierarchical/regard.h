@@ -30,7 +30,7 @@ double regarded_area(const ElementPool& pool, const Regard& regard);
 
 /// Lux (largest channel) that an eye adapts to which looks at `id`: the mean over the first element above it
 /// that is no smaller than a two-hundredth of `area`. A gap between books is dark in a bright room; a cellar
-/// is dark.
+/// is dark. Infinite where nobody looks, as under a box.
 double adapted_light(const ElementPool& pool, const RadiosityState& state, ElementId id, double area);
 
 /// How much more error counts in the dark, 1..10: from a twentieth of the mean downwards the root of what

@@ -1,0 +1,165 @@
+// Where the mesh is cut for the light's sake, and how wrong it is then.
+#include "reconstruct/adaptive_gather.h"
+
+#include <gtest/gtest.h>
+
+#include "reconstruct/buried.h"
+#include "reconstruct/triangulate.h"
+#include "solve/solved_scene.h"
+
+namespace goldthread {
+namespace {
+
+using test::Solved;
+
+/// A black floor, and a plate above it that keeps the light of a lamp without size from half of it. Nobody
+/// asks for the plate's own light.
+Scene half_in_shadow() {
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.0f));
+  Material plate = test::diffuse(0.0f);
+  plate.unlit = true;
+  test::add(scene, test::parallelogram({0.1f, -3, 1}, {3, 0, 0.2f}, {0.5f, 6, 0}), std::move(plate));
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, {0, 0, 2}));
+  return scene;
+}
+
+/// Lux at places of the floor: 0 where the plate lies between.
+double truth_on_floor(const dvec3& p) {
+  const dvec3 d = dvec3(0, 0, 2) - p;
+  // The plate's plane through its corner, spanned by (3, 0, 0.2) and (0.5, 6, 0).
+  const dvec3 n = glm::cross(dvec3(3, 0, 0.2), dvec3(0.5, 6, 0)), corner(0.1, -3, 1);
+  const double t = glm::dot(n, corner - p) / glm::dot(n, d);
+  const dvec3 q = p + t * d - corner;
+  const double v = q.y / 6, u = (q.x - 0.5 * v) / 3;
+  const double squared = glm::dot(d, d);
+  return u > 0 && u < 1 && v > 0 && v < 1 ? 0 : 100 * 2 / (squared * std::sqrt(squared));
+}
+
+struct Found {
+  double error = 0, told = 0;  // root mean square over the mean: true and as the gather says
+  size_t elements = 0;
+};
+
+/// Interpolated over the floor's triangles and held against the truth on a fine raster.
+Found measure(double tolerance) {
+  Solved solved(half_in_shadow(), test::quick());
+  solved.solve();
+  ReconstructOptions options;
+  options.error = tolerance;
+  ReconstructStats stats;
+  AdaptiveGather gather(*solved.solver, options, CancelToken(), stats);
+  gather.run();
+  const PartPoints& points = gather.points(0);
+  const std::vector<vec3>& light = gather.light(0, false);
+  double squares = 0, sum = 0, area = 0;
+  for (uint32_t f = 0; f + 1 < points.corner_first.size(); ++f) {
+    const uint32_t first = points.corner_first[f];
+    std::vector<vec3> loop;
+    for (uint32_t c = first; c < points.corner_first[f + 1]; ++c)
+      loop.push_back(points.points[points.corners[c]].position);
+    std::vector<UVec3> triangles;
+    triangulate_face(loop, triangles);
+    for (const UVec3& t : triangles) {
+      const std::array<uint32_t, 3> corner{points.corners[first + t.x], points.corners[first + t.y],
+                                           points.corners[first + t.z]};
+      const std::array<dvec3, 3> at{points.points[corner[0]].position, points.points[corner[1]].position,
+                                    points.points[corner[2]].position};
+      const double piece = glm::length(glm::cross(at[1] - at[0], at[2] - at[0])) / 2;
+      constexpr int kFine = 12;
+      for (int i = 0; i < kFine; ++i) {
+        for (int j = 0; j < kFine - i; ++j) {
+          const double u = (i + 1 / 3.0) / kFine, v = (j + 1 / 3.0) / kFine, w = 1 - u - v;
+          const double exact = truth_on_floor(u * at[0] + v * at[1] + w * at[2]);
+          const double said = u * double(light[corner[0]].x) + v * double(light[corner[1]].x) +
+                              w * double(light[corner[2]].x);
+          const double weight = piece * 2 / (kFine * (kFine + 1));
+          squares += weight * (said - exact) * (said - exact);
+          sum += weight * exact;
+          area += weight;
+        }
+      }
+    }
+  }
+  return {std::sqrt(squares / area) / (sum / area), stats.error, solved.pool().size()};
+}
+
+TEST(AdaptiveGather, TheErrorIsWhatWasAskedFor) {
+  size_t before = 0;
+  for (const double tolerance : {0.3, 0.15, 0.08}) {
+    const Found found = measure(tolerance);
+    EXPECT_LT(found.error, tolerance);
+    EXPECT_LT(found.told, tolerance);
+    EXPECT_GT(found.elements, before);
+    before = found.elements;
+  }
+}
+
+TEST(AdaptiveGather, LeavesEvenLightAlone) {
+  Solved solved(test::procedural("furnace", 1200), test::quick());
+  solved.solve();
+  const size_t before = solved.pool().size();
+  ReconstructStats stats;
+  ReconstructOptions options;
+  options.error = 0.03;
+  AdaptiveGather gather(*solved.solver, options, CancelToken(), stats);
+  gather.run();
+  EXPECT_EQ(solved.pool().size(), before);
+  EXPECT_LT(stats.error, 0.03);
+  for (const vec3& e : gather.light(0, false)) EXPECT_NEAR(e.x, 2, 0.1f);
+}
+
+TEST(AdaptiveGather, NothingIsCutBelowTheLeastArea) {
+  SolveOptions coarse = test::quick();
+  coarse.least_area = 1e-2;  // the solver's own cuts are larger
+  Solved solved(half_in_shadow(), coarse);
+  solved.solve();
+  ReconstructOptions options;
+  options.error = 1e-3;
+  options.least_area = 1e-3;
+  ReconstructStats stats;
+  AdaptiveGather gather(*solved.solver, options, CancelToken(), stats);
+  gather.run();
+  const double least = 1e-3 * regarded_area(solved.pool(), solved.solver->regard());
+  for (const ElementId id : solved.leaves()) {
+    const ElementId parent = solved.pool()[id].parent;
+    if (solved.pool()[id].kind != ElementKind::kPatch) continue;
+    EXPECT_GT(double(solved.pool()[parent].area), 2 * least * (1 - 1e-5));
+  }
+}
+
+TEST(AdaptiveGather, CancelledGivesTheMeansOfLeaves) {
+  Solved solved(half_in_shadow(), test::quick());
+  solved.solve();
+  CancelToken stop;
+  stop.cancel();
+  ReconstructStats stats;
+  AdaptiveGather gather(*solved.solver, ReconstructOptions(), stop, stats);
+  gather.run();
+  EXPECT_EQ(stats.points, 0u);
+  EXPECT_FALSE(gather.light(0, false).empty());
+}
+
+TEST(Buried, InsideSolidsAndNotInGaps) {
+  // Two boxes that stand 2 mm apart on a floor, under a lamp.
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.5f));
+  for (const float x : {-0.501f, 0.501f})
+    test::add(scene, shapes::cube(1), test::diffuse(0.5f), test::move({x - 0.5f, -0.5f, 0}));
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, {0, 0, 3}));
+  Solved solved(std::move(scene), test::quick());
+  const auto buried = [&](const vec3& x, const vec3& n) {
+    RayCount rays;
+    const bool answer = is_buried(solved.pool(), solved.solver->visibility(), x, n, rays);
+    EXPECT_LE(rays.rays, 32u);
+    return answer;
+  };
+  const vec3 up(0, 0, 1);
+  EXPECT_TRUE(buried({0.5f, 0, 0}, up));                // the floor beneath a box
+  EXPECT_FALSE(buried({0, 0, 0}, up));                  // between the boxes
+  EXPECT_FALSE(buried({-0.001f, 0, 0.5f}, {1, 0, 0}));  // one looking at the other
+  EXPECT_FALSE(buried({1.5f, 0, 0}, up));               // in the open
+}
+
+}  // namespace
+}  // namespace goldthread

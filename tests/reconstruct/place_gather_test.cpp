@@ -1,0 +1,100 @@
+// Light at places: closed forms, shadows to the millimetre, and places that have no light.
+#include "reconstruct/place_gather.h"
+
+#include <gtest/gtest.h>
+
+#include "math/form_factor.h"
+#include "solve/solved_scene.h"
+
+namespace goldthread {
+namespace {
+
+using test::Solved;
+
+/// On instance 0, whose triangles lie in the plane z = 0.
+SurfacePlace on_floor(float x, float y, uint32_t triangle) {
+  return {0, 0, triangle, false, {x, y, 0}, {0, 0, 1}};
+}
+/// The same on `square`, whose two triangles meet in the line x = y.
+SurfacePlace on_square(float x, float y) {
+  return on_floor(x, y, x > y ? 0 : 1);
+}
+
+std::vector<std::optional<vec3>> light_at(Solved& solved, const std::vector<SurfacePlace>& places) {
+  ReconstructStats stats;
+  return gather_places(*solved.solver, places, ReconstructOptions(), CancelToken(), stats);
+}
+
+TEST(PlaceGather, PointLightIsExact) {
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.5f));
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, {0.3f, 0.2f, 1.5f}));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  std::vector<SurfacePlace> places;
+  for (float x = -1.9f; x < 2; x += 0.37f)
+    for (float y = -1.83f; y < 2; y += 0.41f) places.push_back(on_square(x, y));
+  const auto light = light_at(solved, places);
+  for (size_t i = 0; i < places.size(); ++i) {
+    ASSERT_TRUE(light[i]);
+    const dvec3 d = dvec3(0.3, 0.2, 1.5) - dvec3(places[i].position);
+    const double squared = glm::dot(d, d);
+    EXPECT_NEAR(double(light[i]->y), 100 * 1.5 / (squared * std::sqrt(squared)), 1e-3);
+  }
+}
+
+TEST(PlaceGather, LampOfAnAreaIsExactWhereNothingHidesIt) {
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.5f));
+  test::add(scene, test::square(0.4f, 1, false), test::diffuse(0.0f, 1000));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  const std::vector<vec3> lamp{{-0.4f, -0.4f, 1}, {-0.4f, 0.4f, 1}, {0.4f, 0.4f, 1}, {0.4f, -0.4f, 1}};
+  std::vector<SurfacePlace> places;
+  for (float x = -1.9f; x < 2; x += 0.53f) places.push_back(on_square(x, 0.31f * x + 0.05f));
+  const auto light = light_at(solved, places);
+  for (size_t i = 0; i < places.size(); ++i) {
+    const vec3 n(0, 0, 1);
+    const float exact = 1000 * dot(n, polygon_form_factor(places[i].position, n, lamp));
+    ASSERT_GT(exact, 1);
+    // A source that is far for its size is a point with a second-order term: right to 1e-4 as a form factor.
+    EXPECT_NEAR(light[i]->x, exact, 1e-4f * 1000) << places[i].position.x;
+  }
+}
+
+TEST(PlaceGather, HardShadowsEndWhereTheyDo) {
+  // A plate a metre up hides the lamp two metres up from what lies beyond x = 0.2.
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.5f));
+  Material plate = test::diffuse(0.5f);
+  plate.double_sided = true;
+  test::add(scene, test::parallelogram({0.1f, -3, 1}, {3, 0, 0}, {0, 6, 0}), std::move(plate));
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, {0, 0, 2}));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  const auto light = light_at(solved, {on_square(0.199f, 0), on_square(0.201f, 0)});
+  EXPECT_GT(light[0]->x, 24);                  // 25 lux but for the cosine, and what the plate sends back
+  EXPECT_LT(light[1]->x, 0.2f * light[0]->x);  // only what comes by way of plate and floor
+}
+
+TEST(PlaceGather, PlacesWithoutLight) {
+  Scene scene;
+  test::add(scene, test::square(1, 0, true), test::diffuse(0.5f));
+  Material unlit = test::diffuse(0.5f);
+  unlit.unlit = true;
+  test::add(scene, test::square(0.1f, 0.5f, true), unlit);
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, {0, 0, 2}));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  SurfacePlace back = on_square(0.5f, 0.2f), beyond = back, elsewhere = back, dark = back;
+  back.back = true;
+  beyond.triangle = 2;
+  elsewhere.instance = 7;
+  dark.instance = 1;
+  const auto light = light_at(solved, {on_square(0.5f, 0.2f), back, beyond, elsewhere, dark});
+  EXPECT_TRUE(light[0]);
+  for (size_t i = 1; i < light.size(); ++i) EXPECT_FALSE(light[i]) << i;
+}
+
+}  // namespace
+}  // namespace goldthread

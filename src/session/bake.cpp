@@ -65,7 +65,7 @@ Effort effort_for(Quality quality) {
     case Quality::kFinal:
       effort.solve.last_error = 1e-6;
       effort.solve.least_area = 1.5e-6;
-      effort.reconstruct.light_rays = 256;
+      effort.reconstruct.light_rays = 512;
       effort.reconstruct.ray_share = 0.002f;
       effort.reconstruct.error = 0.015;
       effort.reconstruct.growth = 5;

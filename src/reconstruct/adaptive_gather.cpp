@@ -18,7 +18,7 @@ namespace {
 // A point that sees less than this share of what lies before it may be inside something.
 constexpr float kSuspicious = 0.08f;
 // What a point may see, by the luck of its rays, of one.
-constexpr float kMostSeen = 1.15f;
+constexpr float kMostSeen = 1.05f;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
 constexpr double kLeft = 0.5;
 // The share of the allowed squared error that is left to interpolation; the rest is for the links' own.

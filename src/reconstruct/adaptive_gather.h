@@ -82,6 +82,7 @@ class AdaptiveGather {
   void test_leaves(bool again);
   uint64_t gathers() const { return stats_.points + places_tested_; }
   bool is_spent() const {
+    if (options_.full && options_.full()) return true;
     return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
   }
   bool cut();

@@ -1,5 +1,7 @@
 // From a solution on elements to light at vertices.
 #pragma once
+#include <functional>
+
 #include "base/progress.h"
 #include "scene/lighting.h"
 #include "solve/hierarchical/solver.h"
@@ -12,7 +14,8 @@ struct ReconstructOptions {
       0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
   double error = 0.06;  ///< root mean square by area of what lies between vertices, over mean light
   double growth = 3;  ///< no more is cut once so many times the work of the solver's own leaves has been done
-  double least_area = 5e-7;  ///< nothing is cut below this share of the scene's area
+  std::function<bool()> full;  ///< asked before every round of cuts: true when there is no room for more
+  double least_area = 5e-7;    ///< nothing is cut below this share of the scene's area
 };
 
 struct ReconstructStats {

@@ -307,6 +307,9 @@ void Bake::reconstruct_light() {
   tell("reconstruct", 0.7);
   const auto begin = Clock::now();
   ReconstructOptions options = effort_for(options_.quality).reconstruct;
+  if (out_of_memory_) options.growth = 0;
+  if (options_.max_memory)
+    options.full = [limit = *options_.max_memory] { return resident_memory() > limit / 10 * 7; };
   ReconstructStats stats;
   run_watched("reconstruct", 0.8, 0.1, [&](const CancelToken& stop) {
     lighting_ = cancelled_ ? average_lighting(*solver_) : reconstruct(*solver_, options, stop, stats);

@@ -29,7 +29,6 @@ class AdaptiveGather {
     return parts_[part].sides[back ? 1 : 0].light;
   }
   bool is_two_sided(uint32_t part) const { return parts_[part].sides.size() > 1; }
-  const ShownLight& shown() const { return shown_; }
 
  private:
   // What has been gathered at a vertex, for each normal there.

@@ -11,7 +11,7 @@ SOURCE_SIDE = 1e-3
 SKY_LUX = 10000
 # The ground is a square of this side in the place of an infinite one, which makes a percent near the horizon.
 GROUND_REFLECTANCE, GROUND_SIZE = 0.3, 2000.0
-# A uniform sky; the program has no other.
+# The uniform one of sixteen skies.
 UNIFORM = "5"
 REFLECTANCES_QUICK = (0.5,)
 
@@ -273,7 +273,7 @@ def daylight(program, case, table, quick):
         surfaces.append(polygon("ground", ground, exitance=[GROUND_REFLECTANCE * SKY_LUX] * 3))
     _light(program, case, _upright(Scene(surfaces)), receivers, [e * SKY_LUX / 100 for e in exact], table, quick,
            "--sky", f"{SKY_LUX}lux", to_world=_along_axis, stands_in=facade,
-           note="sky type 5; the others wait for CIE skies")
+           note="sky type 5, the uniform one")
 
 
 GROUPS = {"5.2": source, "5.3": source, "5.4": flux, "5.6": reflector, "5.7": reflector, "5.8": interreflection,

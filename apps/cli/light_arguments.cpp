@@ -24,7 +24,7 @@ void add_sky(CLI::App& verb, LightTexts& texts) {
                   "lux on open ground")
       ->type_name("NITS")
       ->group(kGroup);
-  verb.add_option("--sky-model", options.sky_model, "uniform, overcast, clear, cie1 to cie15 or preetham")
+  verb.add_option("--sky-model", options.sky_model, "uniform, overcast, clear, cie1 to cie16 or preetham")
       ->type_name("NAME")
       ->group(kGroup);
   verb.add_option("--turbidity", options.turbidity, "of the air: 2 very clear, 6 hazy (3)")

@@ -33,7 +33,7 @@ struct LightOptions {
   std::optional<float>
       lamp_radius;  ///< metres: makes the scene's point and spot lights balls, 0 points again
 
-  /// uniform, overcast, clear, cie1 to cie15 or preetham; empty for none. Without `sky` as bright as the
+  /// uniform, overcast, clear, cie1 to cie16 or preetham; empty for none. Without `sky` as bright as the
   /// IES's mean sky of its kind with the sun at that height (Recommended Practice for the Calculation of
   /// Daylight Availability, 1984); preetham knows by itself.
   std::string sky_model;

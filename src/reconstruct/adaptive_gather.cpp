@@ -9,6 +9,7 @@
 #include "reconstruct/average.h"
 #include "reconstruct/buried.h"
 #include "reconstruct/interpolate.h"
+#include "reconstruct/leaf_light.h"
 #include "reconstruct/outliers.h"
 #include "reconstruct/triangulate.h"
 
@@ -109,6 +110,14 @@ void AdaptiveGather::run() {
     }
     show_leaves();
   }
+}
+
+ShownLight AdaptiveGather::shown_light() const {
+  ShownLight shown = shown_;
+  for (const PartLight& lit : parts_)
+    for (const Side& side : lit.sides) fit_leaves(solver_.pool(), lit.points, side.leaves, side.light, shown);
+  range_over_leaves(solver_.pool(), shown);
+  return shown;
 }
 
 void AdaptiveGather::LeafError::add(const LeafError& more) {

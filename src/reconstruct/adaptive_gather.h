@@ -28,6 +28,8 @@ class AdaptiveGather {
   const std::vector<vec3>& light(uint32_t part, bool back) const {
     return parts_[part].sides[back ? 1 : 0].light;
   }
+  /// What elements show, leaves as their corners have it.
+  ShownLight shown_light() const;
   bool is_two_sided(uint32_t part) const { return parts_[part].sides.size() > 1; }
 
  private:

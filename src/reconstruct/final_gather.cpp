@@ -62,8 +62,7 @@ class PointGather {
     if (most <= 0) return;
     const float little = 0.1f * options_.ray_share * whole_, weak = (link.mean + link.spread) * most;
     // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
-    if (weak < little && (link.visibility == 0 || most_at(pool_[link.source], x_) * most < 10 * little))
-      return add_modelled(link, pool_[receiver], b);
+    if (weak < little && is_weak_here(link, most, little)) return add_modelled(link, pool_[receiver], b);
     add_source(link, link.source, b);
   }
 
@@ -72,6 +71,11 @@ class PointGather {
   }
 
  private:
+  bool is_weak_here(const Link& link, float most, float little) const {
+    if (link.visibility > 0) return most_at(pool_[link.source], x_) * most < 10 * little;
+    return options_.trust_hidden || link.unoccluded * most < little;
+  }
+
   void add_modelled(const Link& link, const Element& r, const vec3& b) {
     const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
                                   : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
@@ -87,7 +91,7 @@ class PointGather {
     const float factor = dot(m, n_);
     if (factor <= 0) return;
     const float brings = factor * largest(b);
-    if (is_near(s) && brings > kUneven * whole_) {
+    if (is_near(s) && brings > kUneven * whole_ && light_.rise.empty()) {
       if (s.first_child == kNoElement) {
         if (brings > nearest_brings_) nearest_leaf_ = source;
         nearest_brings_ = std::max(nearest_brings_, brings);
@@ -97,8 +101,9 @@ class PointGather {
       }
     }
     const uint32_t count = rays_for(brings / (whole_ + brings), link, s.kind, options_);
-    const bool uneven = is_surface(s.kind) && s.kind != ElementKind::kVolume && s.first_child != kNoElement &&
-                        (light_.high[source] - light_.low[source]) * factor > kUneven * whole_;
+    const bool uneven = is_surface(s.kind) && s.kind != ElementKind::kVolume &&
+                        (s.first_child != kNoElement || !light_.rise.empty()) &&
+                        (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     if (count > 0)
@@ -126,7 +131,8 @@ class PointGather {
       share.seen += weight * part.seen;
       share.hidden += weight * part.hidden;
       for (uint32_t k = 0; k < places.count; ++k) {
-        const vec3& b = light_.shown[pool_.deepest(source, places.points[k])];
+        const ElementId seen = pool_.deepest(source, places.points[k]);
+        const vec3 b = light_.at(seen, places.points[k].position - pool_[seen].centre);
         sum += weight * places.weights[k] * b;
         squares += weight * weight * places.weights[k] * places.weights[k] * luminance(b) * luminance(b);
       }
@@ -143,6 +149,9 @@ class PointGather {
     faced_ += factor;
     seen_ += share.seen / all * factor;
   }
+
+  // Where it is known how light varies within leaves, reading it is dearer only by the rays.
+  float uneven_share() const { return light_.rise.empty() ? kUneven : 0.1f * kUneven; }
 
   bool is_near(const Element& s) const {
     if (!is_surface(s.kind) || s.kind == ElementKind::kVolume) return false;

@@ -7,14 +7,23 @@ namespace goldthread {
 struct GatherOptions {
   uint32_t light_rays = 32;
   float ray_share = 0.01f;
+  bool trust_hidden = true;  ///< whether a weak link whose rays all were stopped is dark at every point
 };
 
 /// The elements' radiosity as gathering reads it, by element: the solver's, or a better one.
 struct ShownLight {
   std::vector<vec3> shown;       ///< lm/m^2, as RadiosityState::shown
   std::vector<float> low, high;  ///< lm/m^2: the range below, as RadiosityState's
+  /// Change of radiosity (rows: colours) a metre of place, of the leaves; empty where leaves are even.
+  std::vector<mat3> rise;
 
   explicit ShownLight(const RadiosityState& state) : shown(state.shown), low(state.low), high(state.high) {}
+
+  /// lm/m^2 at a place of a leaf, `from_centre` metres from the element's centre; at most twice the leaf's.
+  vec3 at(ElementId leaf, const vec3& from_centre) const {
+    if (rise.empty()) return shown[leaf];
+    return glm::clamp(shown[leaf] + rise[leaf] * from_centre, vec3(0), 2.0f * shown[leaf]);
+  }
 };
 
 struct Gathered {

@@ -5,8 +5,6 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "reconstruct/final_gather.h"
-#include "reconstruct/outliers.h"
 
 namespace goldthread {
 namespace {
@@ -69,17 +67,14 @@ std::optional<ElementId> PlaceFinder::leaf(const SurfacePlace& place) const {
   return pool_.deepest(root->second, {place.position, place.normal, triangle});
 }
 
-std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver,
+std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver, const ShownLight& shown,
                                                std::span<const SurfacePlace> places,
                                                const ReconstructOptions& options, const CancelToken& cancel,
                                                ReconstructStats& stats) {
   const PlaceFinder finder(solver.pool());
-  ShownLight shown = settle_outliers(solver, options, cancel, stats);
-  for (size_t id = 0; id < shown.shown.size(); ++id)
-    shown.low[id] = shown.high[id] = largest(shown.shown[id]);
   // Places are few, and somebody asks for just these.
   const GatherOptions gather{std::max(options.light_rays, kPlaceRays),
-                             std::min(options.ray_share, kPlaceShare)};
+                             std::min(options.ray_share, kPlaceShare), false};
   std::vector<std::optional<vec3>> light(places.size());
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(

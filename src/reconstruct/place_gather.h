@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "reconstruct/final_gather.h"
 #include "reconstruct/reconstruct.h"
 
 namespace goldthread {
@@ -39,8 +40,9 @@ class PlaceFinder {
 };
 
 /// Irradiance (lux, linear RGB) at every place: all links into its leaf and into what that is part of,
-/// evaluated there (gather_at). Nothing where none is received. When cancelled, the rest is the leaf's mean.
-std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver,
+/// evaluated there (gather_at), with sources as bright as `shown` says, within their leaves, too. Nothing
+/// where none is received. When cancelled, the rest is the leaf's mean.
+std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver, const ShownLight& shown,
                                                std::span<const SurfacePlace> places,
                                                const ReconstructOptions& options, const CancelToken& cancel,
                                                ReconstructStats& stats);

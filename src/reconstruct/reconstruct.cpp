@@ -17,11 +17,12 @@ std::vector<vec3> to_vertices(const std::vector<vec3>& light, const std::vector<
 }  // namespace
 
 Lighting reconstruct(HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
-                     ReconstructStats& stats) {
+                     ReconstructStats& stats, ShownLight* shown) {
   const ElementPool& pool = solver.pool();
   const SurfaceSet& set = pool.surfaces();
   AdaptiveGather gather(solver, options, cancel, stats);
   gather.run();
+  if (shown != nullptr) *shown = gather.shown_light();
   Lighting lighting;
   for (uint32_t part = 0; part < set.parts.size(); ++part) {
     if (!gather.is_lit(part)) continue;

@@ -8,6 +8,8 @@
 
 namespace goldthread {
 
+struct ShownLight;
+
 struct ReconstructOptions {
   uint32_t light_rays = 128;  ///< shadow rays for a link that brings all of a vertex's light; less pro rata
   float ray_share =
@@ -27,9 +29,10 @@ struct ReconstructStats {
 
 /// Light on every primitive that receives it. Every link on the way to the root is evaluated again at the
 /// vertices (thesis 4.5.5, final gather), and leaves are cut where light bends between them: the solver gains
-/// elements. When cancelled, what is not yet gathered is averaged.
+/// elements. When cancelled, what is not yet gathered is averaged. `shown`, if given, becomes what the
+/// elements show now, for gathering at more places.
 Lighting reconstruct(HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
-                     ReconstructStats& stats);
+                     ReconstructStats& stats, ShownLight* shown = nullptr);
 
 /// The same from the leaf elements' irradiance vectors alone: fast, for snapshots.
 Lighting average_lighting(const HierarchicalSolver& solver);

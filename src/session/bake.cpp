@@ -312,8 +312,10 @@ void Bake::reconstruct_light() {
     options.full = [limit = *options_.max_memory] { return resident_memory() > limit / 10 * 7; };
   ReconstructStats stats;
   run_watched("reconstruct", 0.8, 0.1, [&](const CancelToken& stop) {
-    lighting_ = cancelled_ ? average_lighting(*solver_) : reconstruct(*solver_, options, stop, stats);
-    if (!places_.empty()) light_ = gather_places(*solver_, places_, options, stop, stats);
+    ShownLight shown(solver_->state());
+    lighting_ = cancelled_ ? average_lighting(*solver_)
+                           : reconstruct(*solver_, options, stop, stats, places_.empty() ? nullptr : &shown);
+    if (!places_.empty()) light_ = gather_places(*solver_, shown, places_, options, stop, stats);
   });
   lighting_.revision = 1;
   report_.solver.reconstruct_rays = stats.rays.rays;

@@ -41,14 +41,17 @@ Result<vec3> light_of_sun(const LightOptions& options, const vec3& direction) {
   return vec3(options.sun->illuminance);
 }
 
-/// 1 to 15 for the standard skies by name, 0 for others.
+/// The traditional overcast sky is the sixteenth in the CIE's tables.
+constexpr int kTraditional = 16;
+
+/// 1 to 16 for the standard skies by name, 0 for others.
 int cie_type(const std::string& name) {
   if (name == "overcast") return 1;
   if (name == "clear") return 12;
   int type = 0;
   if (name.substr(0, 3) != "cie") return 0;
   const auto [end, error] = std::from_chars(name.data() + 3, name.data() + name.size(), type);
-  return error == std::errc() && end == name.data() + name.size() && type <= 15 ? type : 0;
+  return error == std::errc() && end == name.data() + name.size() && type <= kTraditional ? type : 0;
 }
 
 /// Horizontal illuminance by the sky alone, lux, of clear, partly cloudy and overcast skies (IES, Recommended
@@ -56,8 +59,8 @@ int cie_type(const std::string& name) {
 /// types 11 to 15 are clear, 7 to 10 in between.
 float usual_illuminance(int type, const vec3& to_sun) {
   const float height = std::clamp(to_sun.y, 0.0f, 1.0f);
-  if (type >= 11) return 800 + 15500 * std::sqrt(height);
-  return 300 + (type >= 7 ? 45000 : 21000) * height;
+  if (type >= 11 && type != kTraditional) return 800 + 15500 * std::sqrt(height);
+  return 300 + (type >= 7 && type != kTraditional ? 45000 : 21000) * height;
 }
 
 SkyLevel level_of(const LightOptions& options, int type, const vec3& to_sun) {
@@ -92,9 +95,10 @@ Result<SkyModel> requested_model(const LightOptions& options, const vec3& to_sun
   }
   if (type == 0)
     return usage("there is no sky model '" + name + "'",
-                 "choose uniform, overcast, clear, cie1 to cie15 or preetham");
-  description.kind = SkyDescription::Kind::kCieGeneral;
-  description.cie_type = type;
+                 "choose uniform, overcast, clear, cie1 to cie16 or preetham");
+  description.kind =
+      type == kTraditional ? SkyDescription::Kind::kTraditionalOvercast : SkyDescription::Kind::kCieGeneral;
+  if (type != kTraditional) description.cie_type = type;
   return SkyModel::make(description);
 }
 

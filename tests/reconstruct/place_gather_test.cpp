@@ -22,7 +22,9 @@ SurfacePlace on_square(float x, float y) {
 
 std::vector<std::optional<vec3>> light_at(Solved& solved, const std::vector<SurfacePlace>& places) {
   ReconstructStats stats;
-  return gather_places(*solved.solver, places, ReconstructOptions(), CancelToken(), stats);
+  ShownLight shown(solved.solver->state());
+  reconstruct(*solved.solver, ReconstructOptions(), CancelToken(), stats, &shown);
+  return gather_places(*solved.solver, shown, places, ReconstructOptions(), CancelToken(), stats);
 }
 
 TEST(PlaceGather, PointLightIsExact) {
@@ -75,6 +77,40 @@ TEST(PlaceGather, HardShadowsEndWhereTheyDo) {
   const auto light = light_at(solved, {on_square(0.199f, 0), on_square(0.201f, 0)});
   EXPECT_GT(light[0]->x, 24);                  // 25 lux but for the cosine, and what the plate sends back
   EXPECT_LT(light[1]->x, 0.2f * light[0]->x);  // only what comes by way of plate and floor
+}
+
+// A lamp lights a wall; by an edge of the wall a black floor sees little but the few centimetres above it,
+// which get a hundredth of what the wall's middle gets, and lie in the same leaf.
+TEST(PlaceGather, WallsAreReadWithinTheirLeaves) {
+  Scene scene;
+  Material wall = test::diffuse(0.5f);
+  test::add(scene, test::parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), test::diffuse(0));  // faces +z
+  test::add(scene, test::parallelogram({-1, -1, 0}, {0, 2, 0}, {0, 0, 2}), std::move(wall));   // faces +x
+  const dvec3 lamp(-0.8, 0, 1);
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 100, vec3(lamp)));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  for (const double away : {0.02, 0.1, 0.5}) {
+    const dvec3 x(-1 + away, 0.3, 0);
+    SurfacePlace place = on_floor(float(x.x), float(x.y), x.x > x.y ? 0 : 1);
+    const auto light = light_at(solved, {place});
+    ASSERT_TRUE(light[0]);
+    // Both inverse-square laws over the wall, on a grid that is finer where the floor is nearer.
+    constexpr int kCells = 1000;
+    double by_way_of_wall = 0;
+    for (int i = 0; i < kCells; ++i)
+      for (int j = 0; j < kCells; ++j) {
+        const double z0 = 2.0 * i / kCells * i / kCells, z1 = 2.0 * (i + 1) / kCells * (i + 1) / kCells;
+        const dvec3 y(-1, -1 + 2 * (j + 0.5) / kCells, (z0 + z1) / 2);
+        const dvec3 to_lamp = lamp - y, to_floor = x - y;
+        const double a = glm::dot(to_lamp, to_lamp), b = glm::dot(to_floor, to_floor);
+        const double landing = 100 * to_lamp.x / (a * std::sqrt(a));
+        by_way_of_wall += 0.5 * landing * to_floor.x * y.z / (3.14159265 * b * b) * (z1 - z0) * 2 / kCells;
+      }
+    const dvec3 d = lamp - x;
+    const double direct = 100 * d.z / (glm::dot(d, d) * glm::length(d));
+    EXPECT_NEAR(double(light[0]->y), direct + by_way_of_wall, 0.02 * by_way_of_wall) << away;
+  }
 }
 
 TEST(PlaceGather, PlacesWithoutLight) {

@@ -62,6 +62,16 @@ TEST(RequestedLights, ModelsHaveAUsualLevel) {
   EXPECT_TRUE(lit(options).lights.empty());  // the sky knows the sun, which sends nothing by itself
 }
 
+// (1 + 2 sin) / 3: the sky of Moon and Spencer, without a direction.
+TEST(RequestedLights, TheSixteenthSkyIsTheOvercastOneOfOld) {
+  LightOptions options = model("cie16");
+  options.sky = {300, 300, 300};
+  const Scene scene = lit(options);
+  EXPECT_NEAR(scene.sky.radiance_towards({0, 1, 0}).x, 300, 1e-3);
+  EXPECT_NEAR(scene.sky.radiance_towards(test::towards(30, 77)).x, 200, 1e-3);
+  EXPECT_NEAR(scene.sky.radiance_towards(test::towards(30, 200)).x, 200, 1e-3);
+}
+
 TEST(RequestedLights, ClearSkyIsBrightestAtTheSun) {
   LightOptions options = model("cie12");
   options.sun = LightOptions::Sun{90000, 40, 70};
@@ -145,8 +155,8 @@ TEST(RequestedLights, EnvironmentsAreTurnedScaledAndRepaired) {
 }
 
 TEST(RequestedLights, WhatMakesNoSenseIsNamed) {
-  LightOptions options = model("cie16");
-  EXPECT_THAT(error_of(options), HasSubstr("cie1 to cie15"));
+  LightOptions options = model("cie17");
+  EXPECT_THAT(error_of(options), HasSubstr("cie1 to cie16"));
   options = model("preetham");
   options.turbidity = 50;
   EXPECT_THAT(error_of(options), HasSubstr("turbidity 50"));

@@ -11,8 +11,10 @@ SOURCE_SIDE = 1e-3
 SKY_LUX = 10000
 # The ground is a square of this side in the place of an infinite one, which makes a percent near the horizon.
 GROUND_REFLECTANCE, GROUND_SIZE = 0.3, 2000.0
-# The uniform one of sixteen skies.
+# Of the CIE's sixteen skies the even one.
 UNIFORM = "5"
+# Of cases that take long to bake: the uniform one, both overcast ones and a clear one.
+FEWER_SKIES = {"5.9": (UNIFORM, "1", "12", "16")}
 REFLECTANCES_QUICK = (0.5,)
 
 
@@ -75,8 +77,11 @@ def radiance_reaches(published, case):
     return "Radiance " + ", ".join(found) if found else ""
 
 
-def _report(case, method, found, exact, table, *, errors=None, seconds=None, note=""):
-    """One row: worst relative error over receivers; where it is dark, of their mean."""
+def _report(case, method, found, exact, table, *, errors=None, seconds=None, note="", held=True):
+    """One row: worst relative error over receivers; where it is dark, of their mean. `held` to the case's tolerance.
+
+    What the lit mesh says between its vertices is told and not held: a preset bounds its error over all surfaces,
+    and these places lie where light bends most."""
     mean = sum(exact) / len(exact)
     relative = [abs(f - e) / (e if e > 0 else mean) for f, e in zip(found, exact)]
     worst_deviate = None
@@ -86,7 +91,7 @@ def _report(case, method, found, exact, table, *, errors=None, seconds=None, not
     if method in LIMITS and method != "hierarchical":
         limit = min(limit, LIMITS[method])
     text = f"worst of {len(found)}; rms {root_mean_square(relative):.1e}"
-    table.add(case["id"], method, max(relative), limit=limit, deviate=worst_deviate, seconds=seconds,
+    table.add(case["id"], method, max(relative), limit=limit if held else None, deviate=worst_deviate, seconds=seconds,
               note=text + (f"; {note}" if note else ""))
 
 
@@ -115,7 +120,7 @@ def _light(program, case, scene, receivers, exact, table, quick, *options, to_wo
         lit, light, seconds = program.gather(scene, case["id"], points, *options)
         _report(case, "hierarchical", [e[1] for e in light], exact, table, seconds=seconds, note=note)
         found = [lit.irradiance(p["point"], p["normal"])[1] for p in points]
-        _report(case, "vertices", found, exact, table, note=note)
+        _report(case, "vertices", found, exact, table, note=note, held=False)
 
 
 def source(program, case, table, quick):
@@ -253,16 +258,28 @@ def _sky_and_ground(opening, receiver):
     return parts
 
 
+def _sky_options(kind, facade):
+    """Of CIE sky `kind`, with the sun 60 degrees up where the case has it: +y is north, -y south."""
+    sky = ["--sky", f"{SKY_LUX}lux"]
+    if kind == UNIFORM:
+        return sky
+    azimuth = "180" if facade else "0"
+    return [*sky, "--sky-model", f"cie{kind}", "--sun", "0", "--sun-elevation", "60", "--sun-azimuth", azimuth]
+
+
 def daylight(program, case, table, quick):
-    """5.9 and 5.11 under a uniform sky (type 5), in percent of what it gives the open ground."""
-    values = case["values_percent_of_Ehz"][UNIFORM]["computed"]
-    receivers, exact = case["receivers"], [values[r["name"]] for r in case["receivers"]]
+    """5.9 and 5.11 under the sixteen skies of the CIE, in percent of what each gives the open ground."""
+    receivers, facade = case["receivers"], case["cie_section"] == "5.11"
     faces, opening = _room(case["room"]), case["opening"]
-    facade = case["cie_section"] == "5.11"
     # The opening as one that shines inwards.
     inwards = opening if area_and_normal(opening)[1][1 if facade else 2] * (1 if facade else -1) > 0 else opening[::-1]
+
+    def exact(kind):
+        values = case["values_percent_of_Ehz"][kind]["computed"]
+        return [values[r["name"]] for r in receivers]
+
     _factors(program, case, receivers, lambda r: _sky_and_ground(inwards, r) if facade else [(inwards, 100)], table,
-             exact=exact)
+             exact=exact(UNIFORM))
     open_face = "wall-y0" if facade else "ceiling"
     surfaces = []
     for name, face in faces.items():
@@ -271,9 +288,11 @@ def daylight(program, case, table, quick):
         half = GROUND_SIZE / 2
         ground = rectangle([-half, -half, 0], [GROUND_SIZE, 0, 0], [0, half, 0])
         surfaces.append(polygon("ground", ground, exitance=[GROUND_REFLECTANCE * SKY_LUX] * 3))
-    _light(program, case, _upright(Scene(surfaces)), receivers, [e * SKY_LUX / 100 for e in exact], table, quick,
-           "--sky", f"{SKY_LUX}lux", to_world=_along_axis, stands_in=facade,
-           note="sky type 5, the uniform one")
+    scene = _upright(Scene(surfaces))
+    for kind in [UNIFORM] if quick else FEWER_SKIES.get(case["cie_section"], case["values_percent_of_Ehz"]):
+        _light(program, case, scene, receivers, [e * SKY_LUX / 100 for e in exact(kind)], table,
+               quick, *_sky_options(kind, facade), to_world=_along_axis, stands_in=facade,
+               note="sky type 5, the uniform one" if kind == UNIFORM else f"sky type {kind}")
 
 
 GROUPS = {"5.2": source, "5.3": source, "5.4": flux, "5.6": reflector, "5.7": reflector, "5.8": interreflection,

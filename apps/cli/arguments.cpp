@@ -104,7 +104,7 @@ void add_info(CLI::App& app, InfoCommand& info) {
 
 /// Texts of options that become values after parsing.
 struct BakeTexts {
-  std::string quality = "medium", mode = "vertex-light", memory, picture;
+  std::string quality = "medium", mode = "vertex-light", memory, picture, error;
   double time_limit = 0;
   LightTexts light;
 };
@@ -166,6 +166,11 @@ void add_bake_effort(CLI::App& verb, BakeCommand& bake, BakeTexts& texts) {
   verb.add_option("--quality", texts.quality, "draft, medium, high or final (medium)")
       ->type_name("Q")
       ->check(CLI::IsMember(names_of(kQualities)).description(""))
+      ->group(kEffort);
+  verb.add_option("--error", texts.error,
+                  "RMS error of the light to aim at, as 2%, instead of --quality (15, 6, 3 and 1.5%)")
+      ->type_name("E")
+      ->excludes("--quality")
       ->group(kEffort);
   add_run(verb, texts.time_limit, bake.options.threads, bake.quiet);
   verb.add_option("--max-memory", texts.memory, "stay within, as 2G or 500M")
@@ -246,6 +251,10 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
   if (options.outputs.empty() && options.points_file.empty())
     return usage_error("bake has nothing to write", "add -o lit.glb");
   options.quality = value_of(kQualities, texts.quality);
+  if (verb.count("--error") > 0) {
+    options.error = parse_share(texts.error);
+    if (!options.error) return usage_error("--error: '" + texts.error + "' is no share", "write 0.02 or 2%");
+  }
   options.mode = value_of(kOutputModes, texts.mode);
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--max-memory") > 0) {

@@ -35,6 +35,8 @@ void add_compare(CLI::App& app, CompareCommand& command) {
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber.description(""));
   verb->add_option("--json", options.json_file, "write the figures, - to print")->type_name("FILE");
+  verb->add_option("--csv", options.csv_file, "write every point with both values as a line")
+      ->type_name("FILE");
   verb->add_option("-o", options.picture, "a .png: grey where A is right, blue under, red over")
       ->type_name("FILE");
   verb->add_option("--full-scale", options.full_scale, "relative error that is all blue or red (0.2)")

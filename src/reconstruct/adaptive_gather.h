@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "reconstruct/final_gather.h"
+#include "reconstruct/leaf_faces.h"
 #include "reconstruct/light_points.h"
 #include "reconstruct/reconstruct.h"
 
@@ -21,6 +22,10 @@ class AdaptiveGather {
 
   /// When cancelled, what is not yet gathered is the mean of the leaves around it.
   void run();
+
+  /// Sets ReconstructStats::estimate from so many places, spread by area, at which light is gathered with
+  /// more rays than the light points had.
+  void measure_error(uint32_t places);
 
   bool is_lit(uint32_t part) const { return !parts_[part].sides.empty(); }
   const PartPoints& points(uint32_t part) const { return parts_[part].points; }
@@ -71,6 +76,12 @@ class AdaptiveGather {
     uint32_t part = 0, side = 0, first_face = 0, faces = 0;  // in leaf_faces_
     ElementId leaf = kNoElement;
   };
+  struct TestPlace {
+    vec3 position{0}, normal{0};
+    vec3 said{0};      // lux, by the corners
+    float doubt = 0;   // variance of its luminance
+    float cosine = 1;  // between the normal and the face's
+  };
   static constexpr uint32_t kNone = 0xffffffffu;
 
   void collect(uint32_t part);
@@ -79,6 +90,8 @@ class AdaptiveGather {
   void gather(const std::vector<Job>& jobs);
   void fill_buried(const PartPoints& points, std::vector<uint8_t> buried, std::vector<vec3>& light) const;
   std::vector<Test> list_tests(bool again);
+  LeafFaces faces_of(const Test& test) const;
+  TestPlace test_place(const Test& test, const FacePlace& at) const;
   LeafError test(const Test& test, double unit_area, RayCount& count) const;
   void test_leaves(bool again);
   uint64_t gathers() const { return stats_.points + places_tested_; }
@@ -87,6 +100,8 @@ class AdaptiveGather {
     return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
   }
   bool cut();
+  std::vector<std::pair<uint32_t, uint32_t>> spread_places(const std::vector<Test>& tests,
+                                                           uint32_t places) const;
   void show_leaves();
 
   HierarchicalSolver& solver_;

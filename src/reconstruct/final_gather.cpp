@@ -181,7 +181,15 @@ class PointGather {
   ElementId nearest_leaf_ = kNoElement;
 };
 
+// What a point may see, by the luck of its rays, of one.
+constexpr float kMostSeen = 1.05f;
+
 }  // namespace
+
+float horizon_gain(float cosine, float seen) {
+  const float all = kMostSeen / std::max(seen, 1e-3f);
+  return all < 1 ? all : std::min(all, 2 / (1 + std::clamp(cosine, 0.0f, 1.0f)));
+}
 
 Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
                    const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays) {

@@ -44,4 +44,11 @@ struct Gathered {
 Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
                    const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
 
+/// What a gathered light is to be multiplied with. A vertex normal that leans from its face, by `cosine`,
+/// looks partly below it, where nothing comes from: (1 - cos) / 2 of its hemisphere. What it would get of an
+/// even surrounding is restored, as far as it does see (Gathered::seen) less than all there is. And no point
+/// sees much more than all there is. (A little more is the luck of its rays: to take just that away would
+/// darken all points on the average.)
+float horizon_gain(float cosine, float seen);
+
 }  // namespace goldthread

@@ -10,7 +10,6 @@ namespace goldthread {
 namespace {
 
 constexpr uint32_t kNoTriangle = 0xffffffffu;
-constexpr float kMostSeen = 1.05f;
 constexpr uint32_t kPlaceRays = 16384;
 constexpr float kPlaceShare = 1e-4f;
 
@@ -87,8 +86,7 @@ std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver,
         RayCount count;
         const Gathered gathered = gather_at(solver, shown, *leaf, places[i].position, places[i].normal,
                                             gather, hash(static_cast<uint32_t>(i), 79), count);
-        // No point sees more than all there is, but for the luck of its rays.
-        light[i] = gathered.irradiance / std::max(1.0f, gathered.seen / kMostSeen);
+        light[i] = gathered.irradiance * horizon_gain(1, gathered.seen);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
       },

@@ -1,5 +1,7 @@
 #include "reconstruct/reconstruct.h"
 
+#include <algorithm>
+
 #include "reconstruct/adaptive_gather.h"
 #include "reconstruct/average.h"
 #include "reconstruct/light_points.h"
@@ -14,6 +16,9 @@ std::vector<vec3> to_vertices(const std::vector<vec3>& light, const std::vector<
   return out;
 }
 
+// The error is measured at a tenth as many places as there are light points, within these limits.
+constexpr uint64_t kLeastChecks = 500, kMostChecks = 4000;
+
 }  // namespace
 
 Lighting reconstruct(HierarchicalSolver& solver, const ReconstructOptions& options, const CancelToken& cancel,
@@ -22,6 +27,7 @@ Lighting reconstruct(HierarchicalSolver& solver, const ReconstructOptions& optio
   const SurfaceSet& set = pool.surfaces();
   AdaptiveGather gather(solver, options, cancel, stats);
   gather.run();
+  gather.measure_error(static_cast<uint32_t>(std::clamp(stats.points / 10, kLeastChecks, kMostChecks)));
   if (shown != nullptr) *shown = gather.shown_light();
   Lighting lighting;
   for (uint32_t part = 0; part < set.parts.size(); ++part) {

@@ -1,6 +1,7 @@
 // From a solution on elements to light at vertices.
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "base/progress.h"
 #include "scene/lighting.h"
@@ -25,6 +26,10 @@ struct ReconstructStats {
   uint64_t points = 0;
   uint64_t outliers = 0;  ///< leaves whose own light was gathered first
   double error = 0;       ///< what `ReconstructOptions::error` bounds, as it is in the end
+  /// Root mean square by area of the error of the light between the points, over its mean, as gathering at
+  /// other places finds it. Noise and interpolation are in it, and sources read more finely than the points
+  /// read them; not what the solution itself is wrong by. None when cancelled.
+  std::optional<double> estimate;
 };
 
 /// Light on every primitive that receives it. Every link on the way to the root is evaluated again at the

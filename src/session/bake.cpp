@@ -18,6 +18,7 @@
 #include "files/solution_file.h"
 #include "math/tone_map.h"
 #include "reconstruct/place_gather.h"
+#include "session/effort.h"
 #include "session/light_setup.h"
 #include "session/reference_points.h"
 #include "session/report.h"
@@ -32,46 +33,6 @@ namespace {
 
 std::span<const uint8_t> as_bytes(const std::string& text) {
   return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
-}
-
-struct Effort {
-  SolveOptions solve;
-  ReconstructOptions reconstruct;
-};
-
-Effort effort_for(Quality quality) {
-  Effort effort;
-  switch (quality) {
-    case Quality::kDraft:
-      effort.solve.last_error = 1e-4;
-      effort.solve.least_area = 2e-4;
-      effort.reconstruct.light_rays = 32;
-      effort.reconstruct.ray_share = 0.03f;
-      effort.reconstruct.error = 0.15;
-      effort.reconstruct.growth = 2;
-      effort.reconstruct.least_area = 2e-6;
-      break;
-    case Quality::kMedium:
-      effort.solve.last_error = 1e-5;
-      effort.solve.least_area = 1.2e-5;
-      break;
-    case Quality::kHigh:
-      effort.solve.last_error = 3e-6;
-      effort.solve.least_area = 6e-6;
-      effort.reconstruct.light_rays = 256;
-      effort.reconstruct.ray_share = 0.005f;
-      effort.reconstruct.error = 0.03;
-      break;
-    case Quality::kFinal:
-      effort.solve.last_error = 1e-6;
-      effort.solve.least_area = 1.5e-6;
-      effort.reconstruct.light_rays = 512;
-      effort.reconstruct.ray_share = 0.002f;
-      effort.reconstruct.error = 0.015;
-      effort.reconstruct.growth = 5;
-      break;
-  }
-  return effort;
 }
 
 // One bake from start to end; the steps in order, each leaving its result and its seconds.
@@ -124,6 +85,7 @@ class Bake {
         work, [&] { return stop_asked() || time_left() < reserve * options_.time_limit.value_or(0); },
         [&] { tell(stage, share); });
   }
+  double tolerated() const { return options_.error.value_or(tolerated_error(options_.quality)); }
   double time_left() const {
     return options_.time_limit ? *options_.time_limit - since(start_)
                                : std::numeric_limits<double>::infinity();
@@ -149,6 +111,12 @@ class Bake {
 Status Bake::check_options() const {
   if (options_.outputs.empty() && options_.points_file.empty())
     return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
+  if (options_.error && !(*options_.error >= kLeastError && *options_.error <= kMostError))
+    return Error{ErrorCode::kUsage,
+                 fmt::format("an error of {:g}% cannot be aimed at", 100 * *options_.error),
+                 {},
+                 {},
+                 fmt::format("choose from {:g}% to {:g}%", 100 * kLeastError, 100 * kMostError)};
   for (const std::string& file : options_.outputs) {
     const std::string extension = file_extension(file);
     if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" &&
@@ -249,7 +217,7 @@ Status Bake::build_hierarchies(const CancelToken& stop) {
     std::erase(report_.warnings, std::string());
   }
   const auto volumes = Clock::now();
-  Effort effort = effort_for(options_.quality);
+  Effort effort = effort_for(tolerated());
   effort.solve.seed = static_cast<uint32_t>(options_.seed);
   solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
   report_.seconds.volume_clusters = since(volumes);
@@ -306,7 +274,7 @@ Status Bake::solve() {
 void Bake::reconstruct_light() {
   tell("reconstruct", 0.7);
   const auto begin = Clock::now();
-  ReconstructOptions options = effort_for(options_.quality).reconstruct;
+  ReconstructOptions options = effort_for(tolerated()).reconstruct;
   if (out_of_memory_) options.growth = 0;
   if (options_.max_memory)
     options.full = [limit = *options_.max_memory] { return resident_memory() > limit / 10 * 7; };
@@ -320,7 +288,11 @@ void Bake::reconstruct_light() {
   lighting_.revision = 1;
   report_.solver.reconstruct_rays = stats.rays.rays;
   report_.solver.interpolation_error = stats.error;
+  report_.solver.error_estimate = stats.estimate;
   report_.seconds.reconstruct = since(begin);
+  // Who names a number wants to know; presets are ways of working, and the report has the figure.
+  if (options_.error) report_.warnings.push_back(missed_error(*options_.error, stats.estimate));
+  std::erase(report_.warnings, std::string());
 }
 
 void Bake::finish_report() {
@@ -332,7 +304,7 @@ void Bake::finish_report() {
                                                     std::max(1e-9, report_.seconds.solve * report_.threads));
   report_.solver.iterations = stats.iterations;
   report_.solver.epsilon = stats.epsilon;
-  report_.solver.error_estimate = stats.error_estimate;
+  report_.solver.link_error = stats.error_estimate;
   report_.converged = stats.converged && !stats.limited;
   const IrradianceRange irradiance = irradiance_range(lighting_);
   report_.irradiance = {irradiance.least, irradiance.most};
@@ -403,12 +375,15 @@ Status Bake::write_one(const std::string& file) {
 
 std::string Bake::summary() const {
   char text[256];
+  const std::string error = report_.solver.error_estimate
+                                ? fmt::format("error about {:.2g}%, ", 100 * *report_.solver.error_estimate)
+                                : std::string();
   std::snprintf(text, sizeof text,
-                "%llu triangles, %llu links, %.1f Mrays, %.1f s (solve %.1f s); power residual %.2f%%",
+                "%llu triangles, %llu links, %.1f Mrays, %.1f s (solve %.1f s); %spower residual %.2f%%",
                 static_cast<unsigned long long>(report_.scene.triangles),
                 static_cast<unsigned long long>(report_.solver.links),
                 static_cast<double>(report_.solver.rays + report_.solver.reconstruct_rays) * 1e-6,
-                report_.seconds.total, report_.seconds.solve,
+                report_.seconds.total, report_.seconds.solve, error.c_str(),
                 100 * report_.power.residual / std::max(1e-30, report_.power.emitted));
   return text;
 }

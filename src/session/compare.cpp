@@ -89,6 +89,12 @@ View look(const TracedScene& scene, int wanted_width, int wanted_height) {
   return view;
 }
 
+void add_line(std::string& lines, const Measured& m, const Receiver& r, bool buried) {
+  lines += fmt::format("{:.7g},{:.7g},{:.7g},{:.5g},{:.5g},{:.5g},{:.6g},{:.6g},{:.3g},{}\n", r.point.x,
+                       r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z, m.value, m.truth,
+                       m.standard_error, buried ? 1 : 0);
+}
+
 class Comparison {
  public:
   Comparison(const CompareOptions& options, const BakeListener& listener)
@@ -153,8 +159,11 @@ Status Comparison::check_options() {
       return usage("a signed picture is a .png", "end it in .png", options_.picture);
     if (const auto probe = AtomicFile::create(options_.picture); !probe) return probe.error();
   }
-  if (!options_.json_file.empty() && options_.json_file != "-")
-    if (const auto probe = AtomicFile::create(options_.json_file); !probe) return probe.error();
+  if (!options_.csv_file.empty() && of_pictures_)
+    return usage("pictures have no points to list", "leave --csv out", options_.csv_file);
+  for (const std::string& file : {options_.json_file, options_.csv_file})
+    if (!file.empty() && file != "-")
+      if (const auto probe = AtomicFile::create(file); !probe) return probe.error();
   return Nothing{};
 }
 
@@ -288,8 +297,18 @@ Status Comparison::compare_solutions() {
   if (!places) return places.error();
   // What lies inside solids nobody sees; an error there is told by itself.
   std::vector<Measured> seen;
-  for (size_t i = 0; i < places->size(); ++i)
-    if (!is_buried(*first->traced, receivers[which[i]])) seen.push_back((*places)[i]);
+  std::string lines = "x,y,z,nx,ny,nz,value,truth,standard_error,inside_solid\n";
+  for (size_t i = 0; i < places->size(); ++i) {
+    const bool buried = is_buried(*first->traced, receivers[which[i]]);
+    if (!buried) seen.push_back((*places)[i]);
+    if (!options_.csv_file.empty()) add_line(lines, (*places)[i], receivers[which[i]], buried);
+  }
+  if (!options_.csv_file.empty()) {
+    const Status status = write_file_atomically(
+        options_.csv_file, {reinterpret_cast<const uint8_t*>(lines.data()), lines.size()});
+    if (!status) return status.error();
+    result_.written.push_back(options_.csv_file);
+  }
   buried_ = places->size() - seen.size();
   figures_ = measure_errors(seen);
   if (buried_ > 0) with_buried_ = measure_errors(*places);

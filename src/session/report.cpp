@@ -41,7 +41,9 @@ std::string BakeReport::json() const {
                  {"ray_time_share", solver.ray_time_share},
                  {"iterations", solver.iterations},
                  {"epsilon", solver.epsilon},
-                 {"error_estimate", solver.error_estimate},
+                 {"error_estimate", solver.error_estimate ? nlohmann::ordered_json(*solver.error_estimate)
+                                                          : nlohmann::ordered_json()},
+                 {"link_error", solver.link_error},
                  {"interpolation_error", solver.interpolation_error}};
   j["power_lm"] = {{"emitted", power.emitted},
                    {"absorbed", power.absorbed},

@@ -26,7 +26,10 @@ struct BakeReport {
     uint64_t links = 0, rays = 0, reconstruct_rays = 0;
     double ray_time_share = 0;
     uint64_t iterations = 0;
-    double epsilon = 0, error_estimate = 0;
+    double epsilon = 0;
+    double link_error = 0;  ///< root of the links' squared errors, over the light that lands
+    std::optional<double>
+        error_estimate;              ///< of the light as written: root mean square by area over the mean
     double interpolation_error = 0;  ///< of light between vertices: root mean square over the mean
   } solver;
   PowerBalance power;

@@ -51,6 +51,8 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--points", "--json"], "bake", "x.glb", "-o", "y.glb", "--points", "places.json")
         self.assert_fails(2, ["--points", "--json"], "bake", "x.glb", "-o", "y.glb", "--json", "light.json")
         self.assert_fails(2, ["--quality"], "bake", "x.glb", "-o", "y.glb", "--quality", "best")
+        self.assert_fails(2, ["--error"], "bake", "x.glb", "-o", "y.glb", "--error", "little")
+        self.assert_fails(2, ["--error", "--quality"], "bake", "x.glb", "-o", "y.glb", "--error", "2%", "--quality", "high")
         self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "2X")
         self.assert_fails(2, ["--max-memory"], "bake", "x.glb", "-o", "y.glb", "--max-memory", "-1")
         self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "1,2")

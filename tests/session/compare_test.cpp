@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "files/image_write.h"
 #include "files/solution_file.h"
@@ -104,6 +106,33 @@ TEST(Compare, ASolutionWithItselfAndWithTwiceItself) {
   EXPECT_GT(bright["points_inside_solids"].get<int>(), 0);  // the floor beneath the blocks
   EXPECT_THAT(result.written, ::testing::Contains(options.picture));
   EXPECT_EQ(bytes_of_file(options.picture).substr(1, 3), "PNG");
+}
+
+TEST(Compare, EveryPointIsALine) {
+  const TempFolder folder;
+  CompareOptions options;
+  options.first = options.second = gold(folder, "cornell-box");
+  options.points = 100;
+  options.csv_file = folder.path("points.csv");
+  const nlohmann::json figures = nlohmann::json::parse(compared(options).json);
+  std::istringstream lines(bytes_of_file(options.csv_file));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "x,y,z,nx,ny,nz,value,truth,standard_error,inside_solid");
+  int inside = 0, all = 0;
+  while (std::getline(lines, line)) {
+    ++all;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    double x, y, z, nx, ny, nz, value, truth, error, in_solid;
+    numbers >> x >> y >> z >> nx >> ny >> nz >> value >> truth >> error >> in_solid;
+    ASSERT_TRUE(numbers) << line;
+    EXPECT_NEAR(nx * nx + ny * ny + nz * nz, 1, 1e-3);
+    EXPECT_EQ(value, truth);
+    inside += in_solid == 1;
+  }
+  EXPECT_EQ(all - inside, figures["points"].get<int>());
+  EXPECT_EQ(inside, figures["points_inside_solids"].get<int>());
 }
 
 TEST(Compare, AFurnaceIsRightToTheReferencesNoise) {

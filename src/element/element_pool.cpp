@@ -13,6 +13,9 @@ ElementPool::ElementPool(const SurfaceSet& set) : set_(&set), sky_(set.scene->sk
   triangle_patches_.resize(set.parts.size());
   make_volumes();
   make_lights();
+  if (!set.has_glass) return;
+  passages_.resize(elements_.size());
+  for (ElementId id = 0; id < elements_.size(); ++id) fill_passage(id);
 }
 
 namespace {
@@ -168,6 +171,10 @@ void ElementPool::expand(std::span<const ElementId> ids) {
   }
   parallel_for(
       elements_.size() - first, [&](size_t i) { fill_child(first + static_cast<ElementId>(i)); }, 8);
+  if (passages_.empty()) return;
+  passages_.resize(elements_.size());
+  parallel_for(
+      elements_.size() - first, [&](size_t i) { fill_passage(first + static_cast<ElementId>(i)); }, 8);
 }
 
 std::vector<ElementId> ElementPool::leaf_elements(uint32_t part, bool back) const {
@@ -245,9 +252,9 @@ std::array<uint64_t, 4> ElementPool::count_by_kind() const {
 }
 
 uint64_t ElementPool::memory_bytes() const {
-  uint64_t bytes = elements_.capacity() * sizeof(Element) + samples_.capacity() * sizeof(SurfacePoint) +
-                   patches_.capacity() * sizeof(Patch) + corners_.capacity() * sizeof(vec3) +
-                   volume_boxes_.capacity() * sizeof(Box);
+  uint64_t bytes = elements_.capacity() * sizeof(Element) + passages_.capacity() * sizeof(ElementPassage) +
+                   samples_.capacity() * sizeof(SurfacePoint) + patches_.capacity() * sizeof(Patch) +
+                   corners_.capacity() * sizeof(vec3) + volume_boxes_.capacity() * sizeof(Box);
   for (const auto& mesh : leaf_meshes_)
     if (mesh) bytes += mesh->memory_bytes();
   return bytes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "element/leaf_mesh.h"
+#include "element/paint.h"
 #include "element/sky_cells.h"
 #include "element/surface_set.h"
 #include "math/box.h"
@@ -56,6 +57,11 @@ struct Element {
   vec3 exitance{0};     ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
 };
 
+/// What elements have besides in scenes with glass.
+struct ElementPassage {
+  vec3 stopped{1};  ///< area average of the light that does not go straight on, by channel
+};
+
 /// A point on an element's real surface.
 struct SurfacePoint {
   vec3 position{0};
@@ -88,6 +94,12 @@ class ElementPool {
 
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
   void expand(std::span<const ElementId> ids);
+
+  /// Share of light that stops at a surface element, by channel: Element::coverage, of coloured glass in its
+  /// colours.
+  vec3 stopped(ElementId id) const {
+    return passages_.empty() ? vec3(elements_[id].coverage) : passages_[id].stopped;
+  }
 
   /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face
   /// cluster.
@@ -154,6 +166,8 @@ class ElementPool {
   void fill_triangle(Element& element, uint32_t triangle) const;
   void fill_patch(Element& element, uint32_t patch) const;
   void fill_paint(Element& element, uint32_t first, uint32_t count) const;
+  void fill_passage(ElementId id);
+  Paint patch_paint(uint32_t patch) const;
   void fill_volume(ElementId id);
   void fill_samples(ElementId id);
   void fill_child(ElementId id);
@@ -171,6 +185,7 @@ class ElementPool {
 
   const SurfaceSet* set_;
   std::vector<Element> elements_;
+  std::vector<ElementPassage> passages_;  // by element; empty where there is no glass
   std::vector<SurfacePoint> samples_;
   std::vector<ElementId> lights_, surface_roots_;
   SkyCells sky_;

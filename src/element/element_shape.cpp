@@ -132,12 +132,22 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
   element.flat = true;
   fill_paint(element, patch.triangle, 1);
   if (part.triangle_reflectance.empty()) return;
-  // Textured: the patch's own average, from points on it.
+  const Paint paint = patch_paint(number);
+  element.reflectance = paint.reflectance;
+  element.exitance = paint.exitance;
+  element.coverage = paint.coverage;
+}
+
+// The average of a textured patch, from points on it.
+Paint ElementPool::patch_paint(uint32_t number) const {
+  const Patch& patch = patches_[number];
+  const Part& part = set_->parts[patch.part];
+  const std::span<const vec3> corners(&corners_[patch.first_corner], patch.corners);
   const UVec3& c = set_->tree(part).mesh.triangles[patch.triangle];
   const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
   const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2);
   const float scale = 1 / std::max(dot(n, n), 1e-30f);
-  Paint paint{vec3(0), vec3(0), 0};
+  Paint paint{vec3(0), vec3(0), 0, vec3(0)};
   constexpr uint32_t kPoints = 16;
   ElementPolygon polygon;
   polygon.count = patch.corners;
@@ -151,10 +161,39 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
+    paint.stopped += one.stopped / static_cast<float>(kPoints);
   }
-  element.reflectance = paint.reflectance;
-  element.exitance = paint.exitance;
-  element.coverage = paint.coverage;
+  return paint;
+}
+
+// What fill_paint is to an element, for its passage.
+void ElementPool::fill_passage(ElementId id) {
+  const Element& element = elements_[id];
+  if (!is_surface(element.kind) || element.kind == ElementKind::kVolume) return;
+  const Part& part = set_->parts[element.part];
+  ElementPassage& passage = passages_[id];
+  passage.stopped = part.triangle_coverage.empty() ? part.stopped : vec3(element.coverage);
+  if (part.triangle_stopped.empty()) return;
+  if (element.kind == ElementKind::kPatch) {
+    passage.stopped = patch_paint(element.shape).stopped;
+    return;
+  }
+  const FaceClusterTree& tree = set_->tree(part);
+  uint32_t first = element.shape, count = 1;
+  if (element.kind == ElementKind::kCluster) {
+    first = tree.nodes[element.shape].first;
+    count = tree.nodes[element.shape].count;
+  }
+  vec3 stopped(0);
+  float area = 0;
+  for (uint32_t t = first; t < first + count; ++t) {
+    const UVec3& c = tree.mesh.triangles[t];
+    const float a =
+        length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z]));
+    area += a;
+    stopped += a * part.triangle_stopped[t];
+  }
+  if (area > 0) passage.stopped = stopped / area;
 }
 
 void ElementPool::fill_volume(ElementId id) {

@@ -37,7 +37,7 @@ const Material& material_of(const SurfaceSet& set, const Part& part) {
 
 bool contends_for_place(const SurfaceSet& set, uint32_t triangle) {
   const Material& material = material_of(set, part_of_triangle(set, triangle));
-  return !material.unlit && material.alpha_mode == AlphaMode::kOpaque;
+  return !material.unlit && !material.is_see_through();
 }
 
 bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other) {

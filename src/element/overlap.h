@@ -8,8 +8,8 @@
 
 namespace goldthread {
 
-/// Whether this triangle of the world competes for its place: not where its material has alpha, since such
-/// share the light as they are, and not where it is unlit.
+/// Whether this triangle of the world competes for its place: not where its material has alpha or is
+/// glass, since such share the light as they are, and not where it is unlit.
 bool contends_for_place(const SurfaceSet& set, uint32_t triangle);
 
 /// Whether the first of two contenders that overlap gets their common area: of two that face the same way

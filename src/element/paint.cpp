@@ -5,9 +5,12 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "element/overlap.h"
+#include "math/colour.h"
 
 namespace goldthread {
 namespace {
+
+constexpr Paint kNoPaint{vec3(0), vec3(0), 0, vec3(0)};
 
 const Primitive& primitive_of(const Scene& scene, const Part& part) {
   return scene.meshes[scene.instances[part.instance].mesh].primitives[part.primitive];
@@ -46,23 +49,52 @@ float coverage_of(const Material& material, float alpha) {
   return 1;
 }
 
+// A factor times one channel of its texture.
+float factor_at(const Scene& scene, const Primitive& primitive, float factor, const Texture& texture,
+                int channel, uint32_t source, vec2 weights) {
+  if (factor <= 0 || !texture.present()) return factor;
+  return factor * sample_data_texture(texture, scene.images,
+                                      texcoord_at(primitive, texture, source, weights))[channel];
+}
+
+float metallic_at(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
+  const Material& material = scene.materials[primitive.material];
+  return factor_at(scene, primitive, material.metallic, material.metallic_texture, 2, source, weights);
+}
+
+float transmission_at(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
+  const Material& material = scene.materials[primitive.material];
+  return factor_at(scene, primitive, material.transmission, material.transmission_texture, 0, source,
+                   weights);
+}
+
+// Share of light, by channel, that glass of base colour `colour` lets through. Vertex colours may be brighter
+// than white; glass is not.
+vec3 through_glass(const Material& material, const vec4& colour, float metallic, float transmission) {
+  return (1 - metallic) * transmission * glm::clamp(vec3(colour) * material.volume_tint, vec3(0), vec3(1));
+}
+
 Paint paint_of_source(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
   const Material& material = scene.materials[primitive.material];
   const vec4 colour = base_colour_at(scene, primitive, source, weights);
+  const float coverage = coverage_of(material, colour.w);
+  const float metallic = metallic_at(scene, primitive, source, weights);
   Paint paint;
-  paint.coverage = coverage_of(material, colour.w);
-  float metallic = material.metallic;
-  if (material.metallic_texture.present() && metallic > 0)
-    metallic *= sample_data_texture(material.metallic_texture, scene.images,
-                                    texcoord_at(primitive, material.metallic_texture, source, weights))
-                    .z;
+  paint.coverage = coverage;
+  paint.stopped = vec3(coverage);
   const vec3 reflectance = glm::clamp(vec3(colour) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
-  paint.reflectance = paint.coverage * reflectance;
+  paint.reflectance = coverage * reflectance;
+  if (material.is_glass()) {
+    const float transmission = transmission_at(scene, primitive, source, weights);
+    paint.stopped *= 1.0f - through_glass(material, colour, metallic, transmission);
+    paint.coverage = luminance(paint.stopped);
+    paint.reflectance *= 1 - transmission;
+  }
   vec3 emission = material.emission;
   if (material.emits() && material.emission_texture.present())
     emission *= vec3(sample_texture(material.emission_texture, scene.images,
                                     texcoord_at(primitive, material.emission_texture, source, weights)));
-  paint.exitance = paint.coverage * kPi * emission;
+  paint.exitance = coverage * kPi * emission;
   return paint;
 }
 
@@ -70,6 +102,7 @@ bool varies(const Scene& scene, const Primitive& primitive) {
   const Material& material = scene.materials[primitive.material];
   return material.base_colour_texture.present() || !primitive.colours.empty() ||
          (material.metallic > 0 && material.metallic_texture.present()) ||
+         (material.is_glass() && material.transmission_texture.present()) ||
          (material.emits() && material.emission_texture.present());
 }
 
@@ -98,15 +131,16 @@ vec2 to_triangle(UnitSquarePoint p) {
 // Mean of paint(weights) over a triangle, by `count` points; `seed` shifts them.
 template <typename PaintAt>
 Paint average(uint32_t count, uint32_t seed, const PaintAt& paint) {
-  Paint sum{vec3(0), vec3(0), 0};
+  Paint sum = kNoPaint;
   for (uint32_t i = 0; i < count; ++i) {
     const Paint one = paint(to_triangle(r2_point(i, seed)));
     sum.reflectance += one.reflectance;
     sum.exitance += one.exitance;
     sum.coverage += one.coverage;
+    sum.stopped += one.stopped;
   }
   const float share = 1.0f / static_cast<float>(count);
-  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share};
+  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share, sum.stopped * share};
 }
 
 Paint average_paint(const SurfaceSet& set, const Part& part, uint32_t triangle) {
@@ -131,8 +165,10 @@ void paint_part(const SurfaceSet& set, Part& part) {
     part.reflectance = paint.reflectance;
     part.exitance = paint.exitance;
     part.coverage = paint.coverage;
+    part.stopped = paint.stopped;
     return;
   }
+  const bool glass = scene.materials[part.material].is_glass();
   const size_t count = mesh.triangles.size();
   std::vector<Paint> paints(count);
   parallel_for(
@@ -140,12 +176,14 @@ void paint_part(const SurfaceSet& set, Part& part) {
   part.triangle_reflectance.resize(count);
   part.triangle_exitance.resize(count);
   part.triangle_coverage.resize(count);
-  glm::dvec3 reflectance(0), exitance(0);
+  if (glass) part.triangle_stopped.resize(count);
+  glm::dvec3 reflectance(0), exitance(0), stopped(0);
   double coverage = 0, area = 0;
   for (size_t t = 0; t < count; ++t) {
     part.triangle_reflectance[t] = paints[t].reflectance;
     part.triangle_exitance[t] = paints[t].exitance;
     part.triangle_coverage[t] = paints[t].coverage;
+    if (glass) part.triangle_stopped[t] = paints[t].stopped;
     const UVec3& c = mesh.triangles[t];
     const double a = static_cast<double>(
         length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z])));
@@ -153,17 +191,25 @@ void paint_part(const SurfaceSet& set, Part& part) {
     reflectance += a * dvec3(paints[t].reflectance);
     exitance += a * dvec3(paints[t].exitance);
     coverage += a * static_cast<double>(paints[t].coverage);
+    stopped += a * dvec3(paints[t].stopped);
   }
   part.reflectance = vec3(reflectance / std::max(area, 1e-300));
   part.exitance = vec3(exitance / std::max(area, 1e-300));
   part.coverage = static_cast<float>(coverage / std::max(area, 1e-300));
+  part.stopped = vec3(stopped / std::max(area, 1e-300));
 }
 
-float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
-  const Primitive& primitive = primitive_of(*set.scene, part);
+vec3 passing_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
+  const Scene& scene = *set.scene;
+  const Primitive& primitive = primitive_of(scene, part);
+  const Material& material = scene.materials[part.material];
   const uint32_t source = set.tree(part).mesh.source_triangles[triangle];
-  return coverage_of(set.scene->materials[part.material],
-                     base_colour_at(*set.scene, primitive, source, weights).w);
+  const vec4 colour = base_colour_at(scene, primitive, source, weights);
+  const float coverage = coverage_of(material, colour.w);
+  vec3 passing(1 - coverage);
+  if (!material.is_glass()) return passing;
+  return passing + coverage * through_glass(material, colour, metallic_at(scene, primitive, source, weights),
+                                            transmission_at(scene, primitive, source, weights));
 }
 
 Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {
@@ -172,7 +218,7 @@ Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 
     const UVec3& c = mesh.triangles[triangle];
     const vec3 p = (1 - weights.x - weights.y) * part.positions[c.x] + weights.x * part.positions[c.y] +
                    weights.y * part.positions[c.z];
-    if (is_covered(set, part, triangle, p)) return {vec3(0), vec3(0), 0};
+    if (is_covered(set, part, triangle, p)) return kNoPaint;
   }
   return paint_of_source(*set.scene, primitive_of(*set.scene, part), mesh.source_triangles[triangle],
                          weights);

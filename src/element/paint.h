@@ -5,13 +5,15 @@
 
 namespace goldthread {
 
-/// Alpha of the part's material at a point of one of its tree's triangles, 0..1 (1 or 0 for a mask).
-float alpha_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
+/// Share of light, by channel, that goes straight on at a point of one of the tree's triangles: past alpha
+/// and through glass.
+vec3 passing_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 
-/// Reflectance, exitance and coverage at a point, as the element averages are made of.
+/// What becomes of light at a point, as the element averages are made of.
 struct Paint {
   vec3 reflectance{0}, exitance{0};
-  float coverage = 1;
+  float coverage = 1;  ///< share of light that stops there, of colours the luminance
+  vec3 stopped{1};     ///< the same by channel
 };
 Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 

@@ -72,7 +72,7 @@ std::vector<TreeJob> list_parts(const Scene& scene, SurfaceSet& set) {
 uint32_t count_clamped(const Scene& scene) {
   uint32_t clamped = 0;
   for (const Material& m : scene.materials) {
-    const vec3 reflectance = m.base_colour * (1 - m.metallic);
+    const vec3 reflectance = m.base_colour * (1 - m.metallic) * (1 - m.transmission);
     if (std::max({reflectance.x, reflectance.y, reflectance.z}) > kMaxReflectance) ++clamped;
   }
   return clamped;
@@ -127,9 +127,24 @@ SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel) {
     if (!cancel.cancelled()) paint_part(set, part);
   });
   list_surfaces(set);
+  for (const Part& part : set.parts) set.has_glass |= scene.materials[part.material].is_glass();
   set.clamped_materials = count_clamped(scene);
   return set;
 }
+
+namespace {
+
+// 2 where light that goes through may change its colour, 1 where it goes through unchanged but for its
+// strength.
+uint8_t see_through_mark(const SurfaceSet& set, const Part& part) {
+  const Material& m = set.scene->materials[part.material];
+  if (!m.is_see_through()) return 0;
+  const Primitive& primitive =
+      set.scene->meshes[set.scene->instances[part.instance].mesh].primitives[part.primitive];
+  return m.is_glass() && (m.is_coloured() || !primitive.colours.empty()) ? 2 : 1;
+}
+
+}  // namespace
 
 WorldTriangles world_triangles(const SurfaceSet& set) {
   WorldTriangles world;
@@ -142,10 +157,10 @@ WorldTriangles world_triangles(const SurfaceSet& set) {
   for (const Part& part : set.parts) {
     const auto offset = static_cast<uint32_t>(world.positions.size());
     world.positions.insert(world.positions.end(), part.positions.begin(), part.positions.end());
-    const bool alpha = set.scene->materials[part.material].alpha_mode != AlphaMode::kOpaque;
-    see_through |= alpha;
+    const Material& material = set.scene->materials[part.material];
+    see_through |= material.is_see_through();
     for (const UVec3& t : set.tree(part).mesh.triangles) world.triangles.push_back(t + UVec3(offset));
-    marks.resize(world.triangles.size(), alpha ? 1 : 0);
+    marks.resize(world.triangles.size(), see_through_mark(set, part));
   }
   if (see_through) world.see_through = std::move(marks);
   return world;

@@ -24,10 +24,12 @@ struct Part {
   uint32_t first_triangle = 0;             ///< the number of its triangle 0 among all of the world's
   vec3 reflectance{0};                     ///< times coverage, clamped below 1
   vec3 exitance{0};                        ///< lm/m^2, times coverage
-  float coverage = 1;                      ///< share of the area that is there (alpha, overlaps)
+  float coverage = 1;                      ///< share of light that stops there (alpha, glass, overlaps)
+  vec3 stopped{1};                         ///< the same by channel
   std::vector<vec3> triangle_reflectance;  ///< area averages per tree triangle; empty when uniform
   std::vector<vec3> triangle_exitance;     ///< the same, empty when uniform
   std::vector<float> triangle_coverage;    ///< the same, empty when uniform
+  std::vector<vec3> triangle_stopped;      ///< the same, empty when uniform and where there is no glass
   /// The world's triangles that own places of this part's (settle_overlaps); triangle t's are covering
   /// [covering_first[t], covering_first[t + 1]). Both empty when there are none.
   std::vector<uint32_t> covering_first, covering;
@@ -51,6 +53,7 @@ struct SurfaceSet {
   uint64_t face_clusters = 0;      ///< inner nodes of all trees
   SkippedTriangles skipped;        ///< over all instances
   uint32_t clamped_materials = 0;  ///< whose reflectance was cut to kMaxReflectance
+  bool has_glass = false;          ///< some part lets light straight on in what is not a hole
   float same_place = 0;            ///< metres within which triangles of one plane lie in one place
   uint64_t overlapping = 0;        ///< pairs of triangles in one place, of which one owns it
 
@@ -61,11 +64,11 @@ struct SurfaceSet {
 SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel);
 
 /// The world's triangles for the ray caster, numbered by Part::first_triangle, and which of them let rays
-/// through (alpha mask and blend; primitives of unlit materials block as all others).
+/// through (alpha mask and blend, glass; primitives of unlit materials block as all others).
 struct WorldTriangles {
   std::vector<vec3> positions;
   std::vector<UVec3> triangles;
-  std::vector<uint8_t> see_through;  ///< empty when all are opaque
+  std::vector<uint8_t> see_through;  ///< as RayCaster takes it; empty when all are opaque
 };
 WorldTriangles world_triangles(const SurfaceSet& set);
 

@@ -106,11 +106,28 @@ void add_emission(Json& json, const Material& material, TextureTable& textures, 
   use_extension(document, "KHR_materials_emissive_strength");
 }
 
+void add_glass(Json& json, const Material& material, TextureTable& textures, GltfDocument& document) {
+  if (!(material.transmission > 0)) return;
+  Json glass = {{"transmissionFactor", shortest(share(material.transmission))}};
+  if (material.transmission_texture.present())
+    glass["transmissionTexture"] = textures.info(material.transmission_texture);
+  json["extensions"]["KHR_materials_transmission"] = std::move(glass);
+  use_extension(document, "KHR_materials_transmission");
+  if (material.volume_tint == vec3(1)) return;
+  // Each of two surfaces takes its half of a metre.
+  const vec3 colour = glm::clamp(material.volume_tint * material.volume_tint, vec3(0), vec3(1));
+  json["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1.0},
+                                                {"attenuationDistance", 1.0},
+                                                {"attenuationColor", json_array({&colour.x, 3})}};
+  use_extension(document, "KHR_materials_volume");
+}
+
 Json build_material(const Material& material, TextureTable& textures, GltfDocument& document) {
   Json json = Json::object();
   if (!material.name.empty()) json["name"] = material.name;
   json["pbrMetallicRoughness"] = surface_of(material, textures);
   add_emission(json, material, textures, document);
+  add_glass(json, material, textures, document);
   if (material.alpha_mode == AlphaMode::kBlend) json["alphaMode"] = "BLEND";
   if (material.alpha_mode == AlphaMode::kMask) {
     json["alphaMode"] = "MASK";

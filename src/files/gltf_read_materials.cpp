@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "files/gltf_read_container.h"
@@ -54,6 +55,8 @@ class MaterialReader {
     TextureUse base, metallic, emission = texture_use(source.emissiveTexture);
     read_reflectance(source, material, base, metallic);
     read_emission(source, material);
+    const TextureUse transmission = read_transmission(source, material);
+    read_volume(source, material);
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
     material.alpha_cutoff = float(source.alphaCutoff);
@@ -63,6 +66,8 @@ class MaterialReader {
     // A texture that only multiplies zero is not worth decoding.
     if (material.metallic > 0)
       if (Status status = place_texture(metallic, material.metallic_texture); !status) return status;
+    if (material.transmission > 0)
+      if (Status status = place_texture(transmission, material.transmission_texture); !status) return status;
     if (material.emits())
       if (Status status = place_texture(emission, material.emission_texture); !status) return status;
     scene_.materials.push_back(std::move(material));
@@ -70,6 +75,46 @@ class MaterialReader {
   }
 
  private:
+  /// `value` of member `key`, within 0 and 1; what is not is named.
+  float share(const char* key, float value) {
+    if (value >= 0 && value <= 1) return value;
+    const float kept = value > 1 ? 1.0f : 0.0f;  // not a number: none
+    scene_.warnings.push_back(
+        fmt::format("{}: {} is {}, not within 0 to 1; taken as {}", place_, key, value, kept));
+    return kept;
+  }
+
+  vec3 share(const char* key, const vec3& value) {
+    vec3 kept = value;
+    for (int c = 0; c < 3; ++c) kept[c] = value[c] >= 0 ? std::min(value[c], 1.0f) : 0.0f;
+    if (kept != value)
+      scene_.warnings.push_back(fmt::format("{}: {} is not within 0 to 1; taken as [{}, {}, {}]", place_, key,
+                                            kept.x, kept.y, kept.z));
+    return kept;
+  }
+
+  TextureUse read_transmission(const tinygltf::Material& source, Material& material) {
+    const auto* glass = find_extension(source.extensions, "KHR_materials_transmission");
+    if (glass == nullptr) return {};
+    material.transmission = share("transmissionFactor", number_member(*glass, "transmissionFactor", 0));
+    return texture_use(object_member(*glass, "transmissionTexture"));
+  }
+
+  /// Beer's law over half the thickness, as a surface's own colour: light goes in by one surface and out by
+  /// another, straight on; how long its way is in between is left to the file's thickness.
+  void read_volume(const tinygltf::Material& source, Material& material) {
+    const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
+    if (volume == nullptr || material.transmission <= 0) return;
+    const float thickness = number_member(*volume, "thicknessFactor", 0);
+    const float distance = number_member(*volume, "attenuationDistance", 0);
+    if (!(thickness > 0) || !(distance > 0) || !std::isfinite(thickness)) return;  // thin, or clear
+    const vec3 colour = share("attenuationColor", vector_member(*volume, "attenuationColor", vec3(1)));
+    material.volume_tint = glm::pow(colour, vec3(0.5f * thickness / distance));
+    if (volume->Has("thicknessTexture"))
+      scene_.warnings.push_back(
+          fmt::format("{}: its glass is taken as thick as thicknessFactor says all over", place_));
+  }
+
   static void read_reflectance(const tinygltf::Material& source, Material& material, TextureUse& base,
                                TextureUse& metallic) {
     vec4 colour(1);

@@ -157,6 +157,13 @@ bool restore(const StoredSky& stored, Sky& sky) {
   return map && repairs.pixels == 0;
 }
 
+// What light does in a material besides being reflected.
+struct StoredPassage {
+  float transmission = 0;
+  Texture transmission_texture;
+  vec3 volume_tint{1};
+};
+
 template <typename V, typename T>
 concept Is = std::same_as<std::remove_const_t<V>, T>;
 
@@ -169,6 +176,10 @@ template <typename A, Is<Material> V>
 void fields(A& a, V& v) {
   a(v.name, v.base_colour, v.alpha, v.base_colour_texture, v.metallic, v.metallic_texture, v.emission,
     v.emission_texture, v.alpha_mode, v.alpha_cutoff, v.double_sided, v.unlit);
+}
+template <typename A, Is<StoredPassage> V>
+void fields(A& a, V& v) {
+  a(v.transmission, v.transmission_texture, v.volume_tint);
 }
 template <typename A, Is<Image> V>
 void fields(A& a, V& v) {
@@ -225,6 +236,29 @@ bool visit_sky(Unpacker& a, Sky& sky) {
   return a.finished() && restore(stored, sky);
 }
 
+bool visit_passages(Packer& a, const std::vector<Material>& materials) {
+  std::vector<StoredPassage> passages;
+  bool any = false;
+  for (const Material& m : materials) {
+    passages.push_back({m.transmission, m.transmission_texture, m.volume_tint});
+    any |= m.transmission > 0;
+  }
+  if (any) a(passages);
+  return true;
+}
+bool visit_passages(Unpacker& a, std::vector<Material>& materials) {
+  std::vector<StoredPassage> passages;
+  a(passages);
+  if (!a.finished() || passages.size() != materials.size()) return false;
+  for (size_t i = 0; i < passages.size(); ++i) {
+    const StoredPassage& p = passages[i];
+    materials[i].transmission = p.transmission;
+    materials[i].transmission_texture = p.transmission_texture;
+    materials[i].volume_tint = p.volume_tint;
+  }
+  return true;
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
@@ -233,6 +267,7 @@ bool visit_section(A& a, V& solution, const std::string& name) {
   if (name == "sky") return visit_sky(a, scene.sky);
   if (name == "images") return a(scene.images), true;
   if (name == "materials") return a(scene.materials), true;
+  if (name == "passages") return visit_passages(a, scene.materials);
   if (name == "meshes") return a(scene.meshes), true;
   if (name == "instances") return a(scene.instances), true;
   if (name == "lights") return a(scene.lights), true;
@@ -244,8 +279,12 @@ bool visit_section(A& a, V& solution, const std::string& name) {
 }  // namespace
 
 std::vector<std::string> section_names() {
-  return {"report", "scene",     "sky",    "images",  "materials",
-          "meshes", "instances", "lights", "cameras", "lighting"};
+  return {"report",    "scene",  "sky",     "images",   "materials", "meshes",
+          "instances", "lights", "cameras", "lighting", "passages"};
+}
+
+bool is_optional_section(const std::string& name) {
+  return name == "passages";
 }
 
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {

@@ -11,6 +11,10 @@ namespace goldthread {
 
 /// The sections of a solution, in the order they are stored.
 std::vector<std::string> section_names();
+/// Whether a section is stored only where there is something in it, so that solutions without are the same
+/// bytes as ever.
+bool is_optional_section(const std::string& name);
+/// Empty for an optional section that there is no need for.
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name);
 
 /// Fills the part of `solution` that `bytes` hold. False when they end early, go on too long, or state a

@@ -97,6 +97,7 @@ bool write_sections(sqlite3* database, const Solution& solution) {
   if (!section || !insert) return false;
   for (const std::string& name : section_names()) {
     const std::vector<uint8_t> bytes = pack_section(solution, name);
+    if (bytes.empty() && is_optional_section(name)) continue;
     sqlite3_reset(section.get());
     sqlite3_bind_text(section.get(), 1, name.c_str(), -1, SQLITE_STATIC);
     sqlite3_bind_int64(section.get(), 2, static_cast<sqlite3_int64>(bytes.size()));
@@ -171,6 +172,9 @@ Result<Solution> read_all(const std::string& file) {
   if (Status status = check_header(database.get(), file); !status) return status.error();
   Solution solution;
   for (const std::string& name : section_names()) {
+    if (is_optional_section(name) &&
+        !query_number(database.get(), "SELECT size FROM sections WHERE name='" + name + "'"))
+      continue;
     const Result<std::vector<uint8_t>> bytes = read_section(database.get(), file, name);
     if (!bytes) return bytes.error();
     if (!unpack_section(solution, name, *bytes))

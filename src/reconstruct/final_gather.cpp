@@ -57,7 +57,7 @@ class PointGather {
         whole_(largest(solver.state().irradiance[leaf]) + 1e-20f) {}
 
   void add(const Link& link, ElementId receiver) {
-    const vec3 b = seen_radiosity(link, solver_.links().views(), light_.shown);
+    const vec3 b = source_radiosity(link, solver_.links().views(), light_.shown);
     const float most = largest(b);
     if (most <= 0) return;
     const float little = 0.1f * options_.ray_share * whole_, weak = (link.mean + link.spread) * most;
@@ -76,10 +76,12 @@ class PointGather {
     return options_.trust_hidden || link.unoccluded * most < little;
   }
 
+  static vec3 tint_of(const Link& link) { return link.tint.is_white() ? vec3(1) : link.tint.colour(); }
+
   void add_modelled(const Link& link, const Element& r, const vec3& b) {
     const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
                                   : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
-    sum_ += std::max(0.0f, modelled) * b;
+    sum_ += std::max(0.0f, modelled) * b * tint_of(link);
     if (!has_solid_angle(pool_[link.source].kind)) return;
     faced_ += link.unoccluded;
     seen_ += link.mean;
@@ -106,11 +108,12 @@ class PointGather {
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
+    vec3 tint = tint_of(link);
     if (count > 0)
-      visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible);
+      visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible, &tint);
     add_doubt(factor * luminance(b), visible, count);
     if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
-    sum_ += visible * factor * b;
+    sum_ += visible * factor * b * tint;
     if (!has_solid_angle(s.kind)) return;
     faced_ += factor;
     seen_ += visible * factor;
@@ -132,14 +135,14 @@ class PointGather {
       share.hidden += weight * part.hidden;
       for (uint32_t k = 0; k < places.count; ++k) {
         const ElementId seen = pool_.deepest(source, places.points[k]);
-        const vec3 b = light_.at(seen, places.points[k].position - pool_[seen].centre);
+        const vec3 b = places.tints[k] * light_.at(seen, places.points[k].position - pool_[seen].centre);
         sum += weight * places.weights[k] * b;
         squares += weight * weight * places.weights[k] * places.weights[k] * luminance(b) * luminance(b);
       }
     }
     const float all = share.seen + share.hidden;
     if (!(all > 0)) {  // a silhouette: as the link has it
-      sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source];
+      sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source] * tint_of(link);
       return;
     }
     const float scale = std::min(factor, 1.0f) / all;

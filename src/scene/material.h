@@ -14,7 +14,10 @@ constexpr float kMaxReflectance = 0.95f;
 enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
 
 /// A glTF metallic-roughness material reduced to its diffuse light. Reflectance is base colour * (1 -
-/// metallic) (glTF 2.0 appendix B); exitance is pi * emission.
+/// metallic) * (1 - transmission) (glTF 2.0 appendix B, KHR_materials_transmission); exitance is pi *
+/// emission. Nothing is taken off for Fresnel's mirror, 4% of what comes straight at a dielectric and on the
+/// whole 9% of diffuse light: that light stays in the room, and where there are no mirrors it is the
+/// diffuse surface that has to carry it.
 struct Material {
   std::string name;
   vec3 base_colour{1};          ///< linear, factor only
@@ -28,8 +31,23 @@ struct Material {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit: shows its colour, receives no light, still blocks it
+  /// KHR_materials_transmission: share of what is no metal that lets light go straight on, factor only. Such
+  /// light takes the base colour, and does not bend.
+  float transmission = 0;
+  Texture transmission_texture;  ///< red channel
+  /// KHR_materials_volume: what is left of light that crosses half the thickness, since it meets a surface on
+  /// its way in and another on its way out; 1 where there is no thickness.
+  vec3 volume_tint{1};
 
   bool emits() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
+  bool is_glass() const { return transmission > 0 && metallic < 1 && !unlit; }
+  /// Whether its colour, but for that of vertices, may be other than grey.
+  bool is_coloured() const {
+    const vec3 colour = base_colour * volume_tint;
+    return base_colour_texture.present() || colour.x != colour.y || colour.y != colour.z;
+  }
+  /// Whether rays may go on through it.
+  bool is_see_through() const { return alpha_mode != AlphaMode::kOpaque || is_glass(); }
 };
 
 }  // namespace goldthread

@@ -54,7 +54,11 @@ TrianglePaint paint_of(const Scene& scene, const Primitive& p, size_t first_inde
   float metallic = material.metallic;
   if (material.metallic_texture.present())
     metallic *= sample_data_texture(material.metallic_texture, scene.images, uv(material.metallic_texture)).z;
-  paint.reflectance *= 1 - metallic;
+  float transmission = material.transmission;
+  if (material.transmission_texture.present())
+    transmission *=
+        sample_data_texture(material.transmission_texture, scene.images, uv(material.transmission_texture)).x;
+  paint.reflectance *= (1 - metallic) * (1 - transmission);
   if (material.emits() && material.emission_texture.present())
     paint.emission *=
         vec3(sample_texture(material.emission_texture, scene.images, uv(material.emission_texture)));

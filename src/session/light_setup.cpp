@@ -47,9 +47,9 @@ std::string describe_overlaps(const SurfaceSet& surfaces) {
                      surfaces.overlapping);
 }
 
-float transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces) {
+Passing transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces) {
   const Part& part = part_of_triangle(surfaces, triangle);
-  return 1 - alpha_at(surfaces, part, triangle - part.first_triangle, weights);
+  return passing_at(surfaces, part, triangle - part.first_triangle, weights);
 }
 
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) {
@@ -58,7 +58,7 @@ float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) 
   for (const LitPrimitive& lit : lighting.primitives) {
     const Mesh& mesh = scene.meshes[scene.instances[lit.instance].mesh];
     const Material& material = scene.materials[mesh.primitives[lit.primitive].material];
-    const vec3 reflectance = material.base_colour * (1 - material.metallic);
+    const vec3 reflectance = material.base_colour * (1 - material.metallic) * (1 - material.transmission);
     for (const vec3& e : lit.irradiance) {
       const float nits = luminance(reflectance * e) / kPi;
       if (!(nits > 0)) continue;

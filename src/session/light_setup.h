@@ -5,6 +5,7 @@
 
 #include "element/surface_set.h"
 #include "scene/lighting.h"
+#include "visibility/ray_caster.h"
 
 namespace goldthread {
 
@@ -21,9 +22,9 @@ std::vector<std::string> describe_problems(const SurfaceSet& surfaces);
 /// The same about triangles in one place; empty when there are none.
 std::string describe_overlaps(const SurfaceSet& surfaces);
 
-/// Share of light that goes through a triangle of the world at a point: all of it where a mask has a hole,
-/// what its alpha leaves where it is blended.
-float transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces);
+/// Light that goes straight on through a triangle of the world at a point: all of it where a mask has a hole,
+/// what its alpha leaves where it is blended, what is left in its colour where it is glass.
+Passing transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces);
 
 /// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
 /// grey.

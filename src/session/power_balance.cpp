@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "math/colour.h"
+#include "session/light_setup.h"
 #include "solve/hierarchical/point_transfer.h"
 
 namespace goldthread {
@@ -122,12 +123,42 @@ struct Counter {
     return ray;
   }
 
-  // Where a ray from a surface point in a cosine direction ends: 0 on a lit side, 1 nowhere, 2 on an unlit
-  // back.
-  int end_of_ray(const SurfacePoint& x, uint32_t i) const {
-    const Ray ray = cosine_ray(x, i);
+  // Where a ray from a surface point in a cosine direction ends: on a lit side, nowhere, or on an unlit back;
+  // and what the light that gets there was multiplied by on its way.
+  enum class End : uint8_t { kLit, kNowhere, kBack };
+  struct Arrival {
+    End end = End::kLit;
+    vec3 light{1};
+  };
+  Arrival end_of_ray(const SurfacePoint& x, uint32_t i) const { return arrival(cosine_ray(x, i)); }
+
+  // What is left of the luminance of `light` when it is multiplied by `by`.
+  static double relative(const vec3& by, const vec3& light) {
+    const auto all = static_cast<double>(luminance(light));
+    return all > 0 ? static_cast<double>(luminance(by * light)) / all : 1;
+  }
+
+  Arrival arrival(const Ray& ray, float* distance = nullptr) const {
     const Hit hit = solver.visibility().caster->closest(ray);
-    return hit.missed() ? 1 : lands(ray, hit) ? 0 : 2;
+    if (hit.missed()) return {End::kNowhere, hit.tint};
+    if (distance != nullptr) *distance = hit.distance;
+    return {lands(ray, hit) ? End::kLit : End::kBack, hit.tint * stopped(hit)};
+  }
+
+  // What a stopped ray stands for, of the light that came: coloured glass stops more of some colours.
+  vec3 stopped(const Hit& hit) const {
+    const SurfaceSet& set = pool().surfaces();
+    const Material& material = set.scene->materials[part_of_triangle(set, hit.triangle).material];
+    if (!material.is_glass()) return vec3(1);
+    const Passing passing = transparency(hit.triangle, hit.weights, set);
+    return (1.0f - passing.light) / std::max(1 - passing.rays, 1e-6f);
+  }
+
+  // Luminance of what stops at a leaf of the light that comes to it, over its coverage, by which leaves are
+  // drawn.
+  double share_that_stops(ElementId leaf, const vec3& light) const {
+    if (!pool().surfaces().has_glass) return static_cast<double>(luminance(light));
+    return static_cast<double>(luminance(pool().stopped(leaf) * light) / pool()[leaf].coverage);
   }
 
   // Flux that reaches surfaces straight from the sky, lm. Rays are counted in shares of the sky's mean, for
@@ -139,9 +170,11 @@ struct Counter {
         level +=
             static_cast<double>(luminance(pool()[id].exitance) * pool().sky_cell(id).solid_angle / (4 * kPi));
     if (!(level > 0)) return 0;
-    const double share = mean(by_area, [&](ElementId, const SurfacePoint& x, uint32_t i) {
-      if (end_of_ray(x, i) != 1) return 0.0;
-      return static_cast<double>(kPi * luminance(sky.radiance_towards(cosine_ray(x, i).direction))) / level;
+    const double share = mean(by_area, [&](ElementId leaf, const SurfacePoint& x, uint32_t i) {
+      const Arrival sky_end = end_of_ray(x, i);
+      if (sky_end.end != End::kNowhere) return 0.0;
+      return share_that_stops(leaf, kPi * sky_end.light * sky.radiance_towards(cosine_ray(x, i).direction)) /
+             level;
     });
     return share * level * by_area.total();
   }
@@ -149,13 +182,17 @@ struct Counter {
   // Flux that reaches surfaces straight from a sun, lm.
   double from_sun(const Leaves& by_area, ElementId light) const {
     const vec3 to_light = -pool().light(light).direction;
-    const double share = mean(by_area, [&](ElementId, const SurfacePoint& x, uint32_t) {
+    const double all = static_cast<double>(luminance(pool()[light].exitance));
+    if (!(all > 0)) return 0;
+    const double share = mean(by_area, [&](ElementId leaf, const SurfacePoint& x, uint32_t) {
       const float cosine = dot(x.normal, to_light);
       if (cosine <= 0) return 0.0;
       const Ray ray{x.position + solver.visibility().epsilon * x.normal, to_light};
-      return static_cast<double>(cosine * solver.visibility().caster->transmittance(ray));
+      vec3 passing;
+      solver.visibility().caster->transmittance({&ray, 1}, {&passing, 1});
+      return share_that_stops(leaf, cosine * passing * pool()[light].exitance) / all;
     });
-    return share * by_area.total() * static_cast<double>(luminance(pool()[light].exitance));
+    return share * by_area.total() * all;
   }
 
   // Flux of a point or spot light: all of it, and the shares that land and that fall on backs.
@@ -175,10 +212,11 @@ struct Counter {
       if (strength <= 0) continue;
       sum += strength;
       const Ray ray{light.position, d};
-      const Hit hit = solver.visibility().caster->closest(ray);
-      if (hit.missed()) continue;
-      const double reach = static_cast<double>(light_range_factor(light, hit.distance));
-      (lands(ray, hit) ? landed : backs) += strength * reach;
+      float distance = 0;
+      const Arrival there = arrival(ray, &distance);
+      if (there.end == End::kNowhere) continue;
+      const double reach = static_cast<double>(light_range_factor(light, distance));
+      (there.end == End::kLit ? landed : backs) += strength * reach * relative(there.light, light.intensity);
       sum -= strength * (1 - reach);  // glTF's range takes light away
     }
     const double scale = intensity * 4 * static_cast<double>(kPi) / count;
@@ -197,9 +235,11 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
   const RadiosityState& state = solver.state();
   const Counter counter{solver, rays, seed};
   const auto area = [](const Element& e) { return static_cast<double>(e.area); };
+  const bool glass = pool.surfaces().has_glass;
   double landing = 0, reflected = 0, own = 0;
   const Leaves by_power = collect(pool, [&](ElementId id, const Element& e) {
-    landing += area(e) * static_cast<double>(e.coverage * luminance(state.irradiance[id]));
+    landing += glass ? area(e) * static_cast<double>(luminance(pool.stopped(id) * state.irradiance[id]))
+                     : area(e) * static_cast<double>(e.coverage * luminance(state.irradiance[id]));
     reflected += area(e) * static_cast<double>(luminance(e.reflectance * state.irradiance[id]));
     own += area(e) * static_cast<double>(luminance(e.exitance));
     return area(e) * static_cast<double>(luminance(state.radiosity[id]));
@@ -208,12 +248,14 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
       collect(pool, [&](ElementId, const Element& e) { return area(e) * static_cast<double>(e.coverage); });
 
   const double leaving = by_power.total();
-  balance.escaped = leaving * counter.mean(by_power, [&](ElementId, const SurfacePoint& x, uint32_t i) {
-    return counter.end_of_ray(x, i) == 1 ? 1.0 : 0.0;
-  });
-  double on_backs = leaving * counter.mean(by_power, [&](ElementId, const SurfacePoint& x, uint32_t i) {
-    return counter.end_of_ray(x, i) == 2 ? 1.0 : 0.0;
-  });
+  const auto ending = [&](Counter::End end) {
+    return leaving * counter.mean(by_power, [&](ElementId id, const SurfacePoint& x, uint32_t i) {
+      const Counter::Arrival there = counter.end_of_ray(x, i);
+      return there.end == end ? Counter::relative(there.light, state.radiosity[id]) : 0.0;
+    });
+  };
+  balance.escaped = ending(Counter::End::kNowhere);
+  double on_backs = ending(Counter::End::kBack);
   balance.emitted = own;
   const Sky& sky = pool.surfaces().scene->sky;
   if (sky.present()) balance.emitted += counter.from_sky(by_area, sky);

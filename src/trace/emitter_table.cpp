@@ -33,7 +33,7 @@ vec2 to_triangle(double u, double v) {
 }
 
 bool is_even(const Material& m) {
-  return !m.emission_texture.present() && m.alpha_mode == AlphaMode::kOpaque;
+  return !m.emission_texture.present() && !m.is_see_through();
 }
 
 /// Lumens that leave a triangle, its texture averaged over a few dozen points.

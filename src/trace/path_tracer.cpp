@@ -102,7 +102,7 @@ class Bundle {
   Few<Meeting, kBundle> meetings_;
   Few<Ray, 3 * kBundle> shadows_;
   Few<Promise, 3 * kBundle> promises_;  ///< of shadows_
-  Few<float, 3 * kBundle> passed_;      ///< of shadows_
+  Few<vec3, 3 * kBundle> passed_;       ///< of shadows_
   std::vector<float> lamp_sums_;
 };
 
@@ -248,6 +248,7 @@ vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met
 
 /// Moves the path to where its ray has ended; false when it ends there, too.
 bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) const {
+  path.throughput *= met.tint;
   if (met.missed()) {
     const float cosine = std::max(0.0f, dot(path.normal, ray.direction));
     if (lights_.has_sky())
@@ -296,15 +297,17 @@ void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits
   for (const CameraPath& path : seen) rays.push_back(path.ray);
   bundle.closest(rays, hits);
   std::vector<PathStart> starts;
-  std::vector<vec3> reflectance;
+  std::vector<vec3> reflectance, tints(seen.size(), vec3(1));
   std::vector<size_t> pixels;
   for (size_t i = 0; i < seen.size(); ++i) {
     Ray ray = rays[i];
     Meeting met;
     scene_.meet(ray, hits[i], met);
+    tints[i] = met.tint;
     while (!met.missed() && !met.live && !scene_.material(met.triangle).unlit) {
       ray.near = met.distance + 2 * scene_.epsilon();
       met = scene_.closest(ray);
+      tints[i] *= met.tint;
       ++count.rays;
     }
     if (met.missed()) {
@@ -325,6 +328,7 @@ void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits
   std::vector<vec3> lux(starts.size());
   irradiance(starts, lux, count);
   for (size_t k = 0; k < pixels.size(); ++k) nits[pixels[k]] += reflectance[k] * lux[k];
+  for (size_t i = 0; i < seen.size(); ++i) nits[i] *= tints[i];
 }
 
 }  // namespace goldthread

@@ -10,18 +10,18 @@
 namespace goldthread {
 namespace {
 
-/// Along one ray, through blended surfaces as far as they let light pass.
+/// Along one ray, through blended surfaces and glass as far as they let light pass.
 vec3 look(const ShownScene& shown, const Sky& sky, Ray ray) {
   constexpr int kMostLayers = 32;
   vec3 nits(0);
-  float passed = 1;
+  vec3 passed(1);
   for (int layer = 0; layer < kMostLayers; ++layer) {
     const Hit hit = shown.closest(ray);
     if (hit.missed()) return nits + passed * sky.radiance_towards(ray.direction);
     const Appearance seen = shown.appearance(hit, ray);
     nits += passed * seen.alpha * seen.nits;
-    passed *= 1 - seen.alpha;
-    if (passed < 1e-3f) break;
+    passed *= seen.behind;
+    if (std::max({passed.x, passed.y, passed.z}) < 1e-3f) break;
     ray.near = hit.distance * 1.0001f + 1e-6f;
   }
   return nits;

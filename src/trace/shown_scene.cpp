@@ -152,22 +152,27 @@ Appearance ShownScene::appearance(const Hit& hit, const Ray& ray) const {
                       interpolate(colours_, hit.triangle, hit.weights);
   Appearance seen;
   if (material.alpha_mode == AlphaMode::kBlend) seen.alpha = std::clamp(colour.w, 0.0f, 1.0f);
+  seen.behind = vec3(1 - seen.alpha);
   if (material.unlit) {
     seen.nits = vec3(colour);
     return seen;
   }
   if (material.emits()) seen.nits = material.emission * vec3(look_up(material.emission_texture));
+  const auto factor = [&](float value, const Texture& texture, int channel) {
+    if (!texture.present()) return value;
+    return value *
+           sample_data_texture(texture, scene_.images, texcoord(texture, hit.triangle, hit.weights))[channel];
+  };
+  const float metallic = factor(material.metallic, material.metallic_texture, 2);
+  const float transmission = factor(material.transmission, material.transmission_texture, 0);
+  seen.behind += seen.alpha * (1 - metallic) * transmission *
+                 glm::clamp(vec3(colour) * material.volume_tint, vec3(0), vec3(1));
   if (!surface.lit) return seen;
-  float metallic = material.metallic;
-  if (material.metallic_texture.present())
-    metallic *= sample_data_texture(material.metallic_texture, scene_.images,
-                                    texcoord(material.metallic_texture, hit.triangle, hit.weights))
-                    .z;
   const bool back = seen_from_back(hit.triangle, ray);
   const bool dark = back && !surface.lit_back;
   const vec3 irradiance =
       dark ? vec3(0) : interpolate(back ? irradiance_back_ : irradiance_, hit.triangle, hit.weights);
-  seen.nits += vec3(colour) * (1 - metallic) * irradiance / kPi;
+  seen.nits += vec3(colour) * (1 - metallic) * (1 - transmission) * irradiance / kPi;
   return seen;
 }
 

@@ -20,6 +20,7 @@ struct ShownSurface {
 struct Appearance {
   vec3 nits{0};
   float alpha = 1;  ///< of a blended surface, else 1
+  vec3 behind{0};   ///< share of what is behind that shows through, by channel: blends and glass
 };
 
 /// Refers to the scene, which must outlive it.

@@ -20,18 +20,23 @@ vec3 unit_normal(const vec3& a, const vec3& b, const vec3& c) {
 bool is_even(const TracedPart& part) {
   const Material& m = *part.material;
   return part.source->colours.empty() && !m.base_colour_texture.present() && !m.metallic_texture.present() &&
-         !m.emission_texture.present();
+         !m.emission_texture.present() && !m.transmission_texture.present();
 }
 
 uint8_t set_of(const Texture& texture) {
   return std::min<uint8_t>(texture.texcoord, 1);
 }
 
+/// All textures that say what a point does with light.
+std::array<const Texture*, 4> textures_of(const Material& m) {
+  return {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture, &m.transmission_texture};
+}
+
 /// Those texture coordinates that the material's textures use and the primitive has.
 std::vector<uint8_t> texcoord_sets(const Material& m, const Primitive& source) {
   std::vector<uint8_t> sets;
   for (uint8_t set = 0; set < 2; ++set)
-    for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
+    for (const Texture* t : textures_of(m))
       if (t->present() && set_of(*t) == set && !source.texcoords[set].empty()) {
         sets.push_back(set);
         break;
@@ -58,6 +63,12 @@ class Fingerprint {
   uint64_t state_ = 0xcbf29ce484222325u;
 };
 
+void add_texture(Fingerprint& print, const Texture& t) {
+  print.add(t.image);
+  print.add(t.texcoord);
+  for (const vec2& v : {t.offset, t.scale, vec2(t.rotation, 0)}) print.add(vec3(v.x, v.y, 0));
+}
+
 void add_material(Fingerprint& print, const Material& m) {
   print.add(m.base_colour);
   print.add(m.emission);
@@ -67,11 +78,13 @@ void add_material(Fingerprint& print, const Material& m) {
   print.add(m.alpha_mode);
   print.add(m.double_sided);
   print.add(m.unlit);
-  for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture}) {
-    print.add(t->image);
-    print.add(t->texcoord);
-    for (const vec2& v : {t->offset, t->scale, vec2(t->rotation, 0)}) print.add(vec3(v.x, v.y, 0));
+  if (m.is_glass()) {
+    print.add(m.transmission);
+    print.add(m.volume_tint);
+    add_texture(print, m.transmission_texture);
   }
+  for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
+    add_texture(print, *t);
 }
 
 void add_image(Fingerprint& print, const Image& image) {
@@ -113,11 +126,15 @@ TracedScene::TracedScene(const Scene& scene) : scene_(scene) {
   for (uint32_t i = 0; i < scene.instances.size(); ++i)
     for (uint32_t p = 0; p < scene.meshes[scene.instances[i].mesh].primitives.size(); ++p) add(i, p);
   std::vector<uint8_t> see_through;
-  for (const TracedTriangle& t : triangles_)
-    see_through.push_back(parts_[t.part].material->alpha_mode != AlphaMode::kOpaque);
+  for (const TracedTriangle& t : triangles_) {
+    const TracedPart& part = parts_[t.part];
+    const Material& m = *part.material;
+    const bool coloured = m.is_glass() && (m.emits() || m.is_coloured() || !part.source->colours.empty());
+    see_through.push_back(coloured ? 2 : m.is_see_through() ? 1 : 0);
+  }
   caster_ = std::make_unique<RayCaster>(
       positions_, corners_, see_through,
-      [this](uint32_t triangle, vec2 weights, const Ray&) { return 1 - coverage(triangle, weights); });
+      [this](uint32_t triangle, vec2 weights, const Ray&) { return passing(triangle, weights); });
   epsilon_ = caster_->epsilon();
 }
 
@@ -169,6 +186,7 @@ Meeting TracedScene::closest(const Ray& ray) const {
 void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.triangle = hit.triangle;
   met.live = false;
+  met.tint = hit.tint;
   if (hit.missed()) return;
   const TracedTriangle& triangle = triangles_[hit.triangle];
   const Material& m = *parts_[triangle.part].material;
@@ -185,7 +203,7 @@ void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
   const float tolerance = 2 * epsilon_;
   uint32_t found = Hit::kMiss;
   caster_->near(p, tolerance, [&](uint32_t t) {
-    if (t >= found || !is_live(t, ray.direction) || material(t).alpha_mode != AlphaMode::kOpaque) return;
+    if (t >= found || !is_live(t, ray.direction) || material(t).is_see_through()) return;
     if (std::abs(dot(triangles_[t].normal, met.normal)) < 0.999f) return;
     if (lies_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2), tolerance)) found = t;
   });
@@ -216,7 +234,7 @@ vec2 TracedScene::texcoord(const Texture& texture, uint32_t triangle, vec2 weigh
 
 void TracedScene::prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const {
   const Material& m = *part.material;
-  for (const Texture* texture : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
+  for (const Texture* texture : textures_of(m))
     if (texture->present()) prefetch_texture(*texture, scene_.images, texcoord(*texture, triangle, weights));
 }
 
@@ -234,24 +252,60 @@ vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {
 vec3 TracedScene::reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
   const Material& m = *part.material;
   if (m.unlit) return vec3(0);
-  float metallic = m.metallic;
-  if (metallic > 0 && m.metallic_texture.present())
-    metallic *= sample_data_texture(m.metallic_texture, scene_.images,
-                                    texcoord(m.metallic_texture, triangle, weights))
-                    .z;
+  const float metallic = factor(m.metallic, m.metallic_texture, 2, triangle, weights);
   if (metallic == 1) return vec3(0);
-  return glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
+  const vec3 diffuse =
+      glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
+  if (!m.is_glass()) return diffuse;
+  const float all = coverage(triangle, weights), surface = alpha_coverage(triangle, weights);
+  const float transmission = factor(m.transmission, m.transmission_texture, 0, triangle, weights);
+  return all > 0 ? diffuse * (surface * (1 - transmission) / all) : vec3(0);
+}
+
+/// A factor times one channel of its texture.
+float TracedScene::factor(float value, const Texture& texture, int channel, uint32_t triangle,
+                          vec2 weights) const {
+  if (!(value > 0) || !texture.present()) return value;
+  return value * sample_data_texture(texture, scene_.images, texcoord(texture, triangle, weights))[channel];
+}
+
+/// Share of what alpha leaves that lets light straight on, but for its colour.
+float TracedScene::glass_share(uint32_t triangle, vec2 weights) const {
+  const Material& m = material(triangle);
+  return factor(m.transmission, m.transmission_texture, 0, triangle, weights) *
+         (1 - factor(m.metallic, m.metallic_texture, 2, triangle, weights));
 }
 
 vec3 TracedScene::emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
   const Material& m = *part.material;
   if (m.unlit || !m.emits()) return vec3(0);
-  if (!m.emission_texture.present()) return m.emission;
-  return m.emission * vec3(sample_texture(m.emission_texture, scene_.images,
-                                          texcoord(m.emission_texture, triangle, weights)));
+  vec3 nits = m.emission;
+  if (m.emission_texture.present())
+    nits *= vec3(
+        sample_texture(m.emission_texture, scene_.images, texcoord(m.emission_texture, triangle, weights)));
+  if (!m.is_glass()) return nits;
+  const float all = coverage(triangle, weights);
+  return all > 0 ? nits * (alpha_coverage(triangle, weights) / all) : vec3(0);
+}
+
+/// What goes straight on through a point. Of glass that glows half the rays are stopped at the least: else
+/// none would find that it does.
+Passing TracedScene::passing(uint32_t triangle, vec2 weights) const {
+  const Material& m = material(triangle);
+  const float surface = alpha_coverage(triangle, weights);
+  if (!m.is_glass()) return Passing(1 - surface);
+  const vec3 colour = glm::clamp(vec3(base_colour(triangle, weights)) * m.volume_tint, vec3(0), vec3(1));
+  Passing through(1 - surface + surface * glass_share(triangle, weights) * colour);
+  if (m.emits()) through.rays = std::min(through.rays, 1 - surface / 2);
+  return through;
 }
 
 float TracedScene::coverage(uint32_t triangle, vec2 weights) const {
+  if (!material(triangle).is_see_through()) return 1;
+  return 1 - passing(triangle, weights).rays;
+}
+
+float TracedScene::alpha_coverage(uint32_t triangle, vec2 weights) const {
   const Material& m = material(triangle);
   if (m.alpha_mode == AlphaMode::kOpaque) return 1;
   const float alpha = base_colour(triangle, weights).w;

@@ -41,6 +41,7 @@ struct Meeting {
   vec2 weights{0};     ///< barycentric, of the source triangle's corners 1 and 2
   vec3 normal{0};      ///< unit, of the side that the ray comes from
   bool live = false;   ///< that side reflects and emits: the front, or either side of what is two-sided
+  vec3 tint{1};        ///< what the light that came this way was multiplied by: Hit::tint
 
   bool missed() const { return triangle == Hit::kMiss; }
 };
@@ -53,22 +54,24 @@ class TracedScene {
   TracedScene(const TracedScene&) = delete;  // the ray caster calls back into this object
   TracedScene& operator=(const TracedScene&) = delete;
 
-  /// The nearest surface. Of alpha-masked and blended ones a share of rays, their coverage, is stopped. Where
+  /// The nearest surface. Of alpha-masked and blended ones, and of glass, a share of rays, their coverage, is
+  /// stopped. Where
   /// the black back of one sheet is met and another sheet in the same place shows its front, as in plates
   /// without thickness that are modelled as two, it is the front.
   Meeting closest(const Ray& ray) const;
   /// What `closest` makes of what the ray caster says.
   void meet(const Ray& ray, const Hit& hit, Meeting& met) const;
-  /// Share of light that gets along the ray from near to far.
+  /// Share of light that gets along the ray from near to far, in the channel that passes best.
   float transmittance(const Ray& ray) const { return caster_->transmittance(ray); }
 
-  /// Diffuse reflectance at a point: base colour x texture x vertex colour x (1 - metallic), within 0 and
-  /// kMaxReflectance; 0 where the material is unlit. Not times coverage.
+  /// Diffuse reflectance at a point for the rays that are stopped there: base colour x texture x vertex
+  /// colour x (1 - metallic), within 0 and kMaxReflectance; 0 where the material is unlit. Not times
+  /// coverage; of glass it is the diffuse share of all light over coverage.
   vec3 reflectance(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
     return part.even ? part.reflectance : reflectance_at(part, triangle, weights);
   }
-  /// Emitted luminance, nits, not times coverage; 0 where the material is unlit.
+  /// Emitted luminance, nits, over coverage just so; 0 where the material is unlit.
   vec3 emission(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
     return part.even ? part.emission : emission_at(part, triangle, weights);
@@ -87,7 +90,8 @@ class TracedScene {
     const TracedPart& part = parts_[triangles_[triangle].part];
     if (!part.even) prefetch_textures(part, triangle, weights);
   }
-  /// Share of a point that is there, 0..1: 0 or 1 for a mask, the clamped alpha for a blend.
+  /// Share of rays that a point stops, 0..1: 0 or 1 for a mask, the clamped alpha for a blend; of glass, what
+  /// neither alpha nor transmission lets through.
   float coverage(uint32_t triangle, vec2 weights) const;
   /// What an unlit material shows: its colour, taken as nits.
   vec3 unlit_colour(uint32_t triangle, vec2 weights) const;
@@ -112,6 +116,10 @@ class TracedScene {
   vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   void prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
+  float factor(float value, const Texture& texture, int channel, uint32_t triangle, vec2 weights) const;
+  float glass_share(uint32_t triangle, vec2 weights) const;
+  float alpha_coverage(uint32_t triangle, vec2 weights) const;
+  Passing passing(uint32_t triangle, vec2 weights) const;
   vec2 texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const;
   template <typename T>
   T interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const;

@@ -6,8 +6,10 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <vector>
 
 #include "base/check.h"
@@ -20,6 +22,7 @@ namespace {
 
 struct FilterData {
   Transparency transparency;
+  bool coloured = false;
   std::vector<uint32_t> triangles;  // of the see-through geometry's primitives
 };
 
@@ -36,21 +39,36 @@ void init_context(Context& context) {
 #endif
 
 // What one query for shadows knows besides its rays: how much of each one's light is left, by the ray's id.
+// Written for those only that meet something that lets light through.
 struct ShadowContext {
   Context embree;  // first, so that a pointer to it is one to all
-  std::array<float, 16> left;
+  uint32_t met = 0;
+  bool by_coin = false;  // what rays that were let through by the coin carry, instead of what light is left
+  union {
+    std::array<vec3, 16> left;
+  };
 
-  ShadowContext() {
-    init_context(embree);
-    left.fill(1);
-  }
+  ShadowContext() { init_context(embree); }
+  vec3 light(uint32_t id) const { return (met >> id & 1) != 0 ? left[id] : vec3(1); }
+};
+
+// What one query for the nearest hit knows besides its ray.
+struct ClosestContext {
+  Context embree;
+  bool through_colour = false;
+
+  ClosestContext() { init_context(embree); }
 };
 
 struct Candidate {
   Ray ray;
   uint32_t triangle = 0;
-  float passing = 0;
+  Passing passing{0.0f};
 };
+
+float largest(const vec3& v) {
+  return std::max(v.x, std::max(v.y, v.z));
+}
 
 Candidate candidate(const RTCFilterFunctionNArguments* args, unsigned i) {
   const auto* data = static_cast<const FilterData*>(args->geometryUserPtr);
@@ -78,7 +96,10 @@ void filter_closest(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const Candidate c = candidate(args, i);
-    if (c.passing > 0 && coin(c) < c.passing) args->valid[i] = 0;
+    if (!(c.passing.rays > 0) || !(coin(c) < c.passing.rays)) continue;
+    args->valid[i] = 0;
+    if (c.passing.light != vec3(c.passing.rays))
+      reinterpret_cast<ClosestContext*>(args->context)->through_colour = true;
   }
 }
 
@@ -86,20 +107,27 @@ void filter_shadow(const RTCFilterFunctionNArguments* args) {
   auto* context = reinterpret_cast<ShadowContext*>(args->context);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    float& left = context->left[RTCRayN_id(args->ray, args->N, i)];
-    left *= candidate(args, i).passing;
-    if (left > 0) args->valid[i] = 0;
+    const uint32_t id = RTCRayN_id(args->ray, args->N, i);
+    const Candidate c = candidate(args, i);
+    vec3& left = context->left[id];
+    if ((context->met >> id & 1) == 0) left = vec3(1);
+    context->met |= 1u << id;
+    left *= context->by_coin ? c.passing.light / std::max(c.passing.rays, 1e-6f) : c.passing.light;
+    if (largest(left) > 0) args->valid[i] = 0;
   }
 }
 
 // One call of Embree; both versions share the names but not the signatures.
-void intersect1(RTCScene scene, RTCRayHit* hit) {
+void intersect1(RTCScene scene, RTCRayHit* hit, ClosestContext* context) {
 #if GOLDTHREAD_EMBREE >= 4
-  rtcIntersect1(scene, hit, nullptr);
+  if (context == nullptr) return rtcIntersect1(scene, hit, nullptr);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context->embree;
+  rtcIntersect1(scene, hit, &arguments);
 #else
-  Context context;
-  init_context(context);
-  rtcIntersect1(scene, &context, hit);
+  ClosestContext own;
+  rtcIntersect1(scene, context != nullptr ? &context->embree : &own.embree, hit);
 #endif
 }
 
@@ -166,6 +194,25 @@ struct RayCaster::State {
     return map.empty() ? primitive : map[primitive];
   }
 
+  // Embree marks a blocked ray by tfar = -inf.
+  vec3 light(const Ray& ray) const {
+    RTCRay query = to_embree(ray);
+    ShadowContext context;
+    occluded1(scene, &query, context);
+    return query.tfar < 0 ? vec3(0) : context.light(0);
+  }
+
+  // What a ray carries that the coin let through colour. Candidates come in no order, and some may lie beyond
+  // the hit: what lies before it is looked at once more, and each of these has let the ray through.
+  vec3 tint(const Ray& ray, const RTCRayHit& found) const {
+    RTCRay query = to_embree(ray);
+    if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID) query.tfar = std::nextafter(found.ray.tfar, ray.near);
+    ShadowContext context;
+    context.by_coin = true;
+    occluded1(scene, &query, context);
+    return context.light(0);
+  }
+
   ~State() {
     if (scene != nullptr) rtcReleaseScene(scene);
     if (device != nullptr) rtcReleaseDevice(device);
@@ -213,6 +260,7 @@ RayCaster::RayCaster(std::span<const vec3> positions, std::span<const UVec3> tri
   rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s.scene, RTC_BUILD_QUALITY_MEDIUM);
   s.see_through.transparency = std::move(transparency);
+  s.see_through.coloured = std::find(see_through.begin(), see_through.end(), 2) != see_through.end();
   for (size_t i = 0; i < see_through.size(); ++i)
     if (see_through[i] != 0) s.see_through.triangles.push_back(static_cast<uint32_t>(i));
   if (s.see_through.triangles.empty()) {
@@ -236,8 +284,15 @@ void RayCaster::closest(const Ray& ray, Hit& hit) const {
   query.ray = to_embree(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect1(state_->scene, &query);
   hit.triangle = Hit::kMiss;
+  hit.tint = vec3(1);
+  if (is_coloured()) {
+    ClosestContext context;
+    intersect1(state_->scene, &query, &context);
+    if (context.through_colour) hit.tint = state_->tint(ray, query);
+  } else {
+    intersect1(state_->scene, &query, nullptr);
+  }
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
   hit.triangle = state_->triangle_of(query.hit.geomID, query.hit.primID);
   hit.distance = query.ray.tfar;
@@ -257,22 +312,23 @@ void RayCaster::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
 }
 
 float RayCaster::transmittance(const Ray& ray) const {
-  RTCRay query = to_embree(ray);
-  ShadowContext context;
-  occluded1(state_->scene, &query, context);
-  return query.tfar < 0 ? 0.0f : context.left[0];  // Embree marks a blocked ray by tfar = -inf
+  return largest(state_->light(ray));
 }
 
-void RayCaster::transmittance(std::span<const Ray> rays, std::span<float> out) const {
+void RayCaster::transmittance(std::span<const Ray> rays, std::span<vec3> out) const {
   GOLDTHREAD_CHECK_EQ(rays.size(), out.size());
-  for (size_t i = 0; i < rays.size(); ++i) out[i] = transmittance(rays[i]);
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = state_->light(rays[i]);
 }
 
-void RayCaster::packet_transmittance(std::span<const Ray> rays, std::span<float> out) const {
+void RayCaster::packet_transmittance(std::span<const Ray> rays, std::span<float> out,
+                                     std::span<vec3> colours) const {
   GOLDTHREAD_CHECK_LE(rays.size(), size_t{16});
   GOLDTHREAD_CHECK_EQ(rays.size(), out.size());
+  if (!colours.empty()) GOLDTHREAD_CHECK_EQ(rays.size(), colours.size());
   if (rays.size() == 1) {
-    out[0] = transmittance(rays[0]);
+    const vec3 light = state_->light(rays[0]);
+    out[0] = largest(light);
+    if (!colours.empty()) colours[0] = light;
     return;
   }
   alignas(64) int valid[16];
@@ -295,7 +351,11 @@ void RayCaster::packet_transmittance(std::span<const Ray> rays, std::span<float>
   }
   ShadowContext context;
   occluded16(state_->scene, valid, &packet, context);
-  for (size_t i = 0; i < rays.size(); ++i) out[i] = packet.tfar[i] < 0 ? 0.0f : context.left[i];
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const vec3 light = packet.tfar[i] < 0 ? vec3(0) : context.light(static_cast<uint32_t>(i));
+    out[i] = largest(light);
+    if (!colours.empty()) colours[i] = light;
+  }
 }
 
 void RayCaster::near(const vec3& point, float radius, const std::function<void(uint32_t)>& visit) const {
@@ -318,6 +378,10 @@ void RayCaster::near(const vec3& point, float radius, const std::function<void(u
         return false;  // the radius stays
       },
       &visitor);
+}
+
+bool RayCaster::is_coloured() const {
+  return state_->see_through.coloured;
 }
 
 float RayCaster::epsilon() const {

@@ -43,6 +43,48 @@ TEST(GltfMaterials, DefaultsOfTheFormat) {
   EXPECT_FALSE(m.double_sided || m.unlit || m.emits() || m.base_colour_texture.present());
 }
 
+json glass(json members) {
+  return {{"extensions", {{"KHR_materials_transmission", std::move(members)}}}};
+}
+
+TEST(GltfMaterials, TransmissionIsItsFactorAndTexture) {
+  const Scene scene = read_built(
+      with_material(glass({{"transmissionFactor", 0.75}, {"transmissionTexture", {{"index", 0}}}})));
+  EXPECT_EQ(scene.materials[0].transmission, 0.75f);
+  EXPECT_EQ(scene.materials[0].transmission_texture.image, 0);
+  EXPECT_FALSE(scene.materials[0].is_glass());  // metallicFactor is missing, and that means metal
+  const Scene none = read_built(with_material(glass(json::object())));
+  EXPECT_EQ(none.materials[0].transmission, 0);
+}
+
+TEST(GltfMaterials, TransmissionOutOfRangeIsClampedAndNamed) {
+  for (const auto& [given, kept] : {std::pair(1.5, 1.0f), std::pair(-0.5, 0.0f)}) {
+    const Scene scene = read_built(with_material(glass({{"transmissionFactor", given}})));
+    EXPECT_EQ(scene.materials[0].transmission, kept);
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("material 0: transmissionFactor is")));
+  }
+}
+
+TEST(GltfMaterials, TransmissionTextureMustExist) {
+  TempFolder folder;
+  const GltfBuilder b =
+      with_material(glass({{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 7}}}}));
+  const Result<Scene> scene = read_scene(folder.write("scene.gltf", b.text()));
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().line(), HasSubstr("there is no texture 7"));
+}
+
+TEST(GltfMaterials, VolumesTakeHalfTheirLightAtEachSurface) {
+  json material = glass({{"transmissionFactor", 1}});
+  json& volume = material["extensions"]["KHR_materials_volume"];
+  volume = {{"thicknessFactor", 0.5}, {"attenuationDistance", 0.25}, {"attenuationColor", {0.25, 1, 0}}};
+  const vec3 tint = read_built(with_material(material)).materials[0].volume_tint;
+  EXPECT_FLOAT_EQ(tint.x * tint.x, 0.0625f);  // 0.25 to the power of two distances
+  EXPECT_EQ(vec2(tint.y, tint.z), vec2(1, 0));
+  volume["thicknessFactor"] = 0;  // thin
+  EXPECT_EQ(read_built(with_material(material)).materials[0].volume_tint, vec3(1));
+}
+
 TEST(GltfMaterials, FactorsAndFlags) {
   const Material m =
       read_built(with_material({{"name", "paint"},

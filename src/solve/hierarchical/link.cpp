@@ -42,8 +42,15 @@ struct PointSample {
   vec3 transfer{0};  // visibility included
   float received = 0;
   float unoccluded = 0;
+  vec3 by_channel{0};  // received, in the colour of what is in between
   uint32_t rays = 0;
 };
+
+// The colour of light that sums up to `by_channel`, and to `all` by each ray's best channel; white where
+// there is none to tell it by.
+Tint tint_of(const Visibility& visibility, const vec3& by_channel, float all) {
+  return all > 0 && visibility.caster->is_coloured() ? Tint(by_channel / all) : Tint();
+}
 
 PointSample sample_point(const ElementPool& pool, const Visibility& visibility, ElementId source,
                          const SurfacePoint& x, uint32_t rays, uint32_t seed, RayCount& count) {
@@ -52,11 +59,13 @@ PointSample sample_point(const ElementPool& pool, const Visibility& visibility, 
   out.unoccluded = dot(out.transfer, x.normal);
   if (out.unoccluded <= 0) return {};
   const uint64_t before = count.rays;
-  const float v = visibility.fraction(pool, source, x.position, x.normal, rays, seed, count);
+  vec3 tint;
+  const float v = visibility.fraction(pool, source, x.position, x.normal, rays, seed, count, 0, &tint);
   out.rays = static_cast<uint32_t>(count.rays - before);
   out.received = out.unoccluded * v;
   if (is_surface(pool[source].kind)) out.received = std::min(1.0f, out.received);
   out.transfer *= out.received / out.unoccluded;
+  out.by_channel = out.received * tint;
   return out;
 }
 
@@ -82,15 +91,18 @@ void link_polygon(const ElementPool& pool, const Visibility& visibility, Link& l
   at[points] = {pool[link.receiver].centre, at[0].normal};
   std::array<PointSample, 9> sample;
   uint32_t rays = 0;
+  vec3 by_channel(0);
   for (uint32_t i = 0; i <= points; ++i) {
     sample[i] =
         sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
     rays += sample[i].rays;
     if (i == points) break;
+    by_channel += sample[i].by_channel / static_cast<float>(points);
     link.mean += sample[i].received / static_cast<float>(points);
     link.unoccluded += sample[i].unoccluded / static_cast<float>(points);
   }
   finish(link, link.mean, link.unoccluded, rays);
+  link.tint = tint_of(visibility, by_channel, link.mean);
   // The ring's corners lie at -+ along two orthogonal axes.
   const vec3 a1 = 0.5f * (at[1].position - at[0].position), a2 = 0.5f * (at[2].position - at[0].position);
   const float g1 = (sample[1].received + sample[3].received - sample[0].received - sample[2].received) / 4;
@@ -185,6 +197,7 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
   std::array<float, kStoredSamples> received{};
   std::array<vec3, kStoredSamples> normals;
   uint32_t rays = 0, facing = 0;
+  vec3 by_channel(0);
   for (uint32_t i = 0; i < points; ++i) {
     const PointSample sample =
         sample_point(pool, visibility, link.source, at[i], rays_per_point, link.receiver * 16 + i, count);
@@ -192,6 +205,7 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
     received[i] = sample.received;
     if (sample.unoccluded > 0) ++facing;
     rays += sample.rays;
+    by_channel += sample.by_channel / static_cast<float>(points);
     link.transfer += sample.transfer;
     link.mean += sample.received / static_cast<float>(points);
     link.unoccluded += sample.unoccluded / static_cast<float>(points);
@@ -200,6 +214,7 @@ void link_cluster(const ElementPool& pool, const Visibility& visibility, Link& l
   // them.
   if (facing > 0) link.transfer /= static_cast<float>(facing);
   finish(link, link.mean, link.unoccluded, rays);
+  link.tint = tint_of(visibility, by_channel, link.mean);
   const Element& receiver = pool[link.receiver];
   if (receiver.flat) {
     fit_plane(link, receiver, {at.data(), points}, {received.data(), points});
@@ -234,6 +249,7 @@ PointSample sample_points(const ElementPool& pool, const Visibility& visibility,
         sample_point(pool, visibility, towards, at[i], rays_per_point, seed + i, count);
     sum.received += sample.received / points;
     sum.unoccluded += sample.unoccluded / points;
+    sum.by_channel += sample.by_channel / points;
     sum.rays += sample.rays;
   }
   return sum;
@@ -252,6 +268,7 @@ PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibil
       sample_points(pool, visibility, link.receiver, points, s.flat ? 4 : 2, link.source * 16, count);
   sample.received *= s.area / r.area;
   sample.unoccluded *= s.area / r.area;
+  sample.by_channel *= s.area / r.area;
   return sample;
 }
 
@@ -263,6 +280,19 @@ bool reciprocity_helps(const Element& r, const Element& s) {
 }
 
 }  // namespace
+
+Tint::Tint(const vec3& colour) : bits_(0) {
+  for (int c = 0; c < 3; ++c) {
+    const float root = std::sqrt(std::clamp(colour[c], 0.0f, 1.0f));
+    bits_ |= static_cast<uint32_t>(std::lround(1023 * root)) << (10 * c);
+  }
+}
+
+vec3 Tint::colour() const {
+  const vec3 root(static_cast<float>(bits_ & 1023u), static_cast<float>(bits_ >> 10 & 1023u),
+                  static_cast<float>(bits_ >> 20 & 1023u));
+  return root * root / (1023.0f * 1023.0f);
+}
 
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
                uint32_t points, uint32_t rays_per_point, RayCount& ray_count) {
@@ -277,6 +307,7 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
     link.spread += std::abs(sample.received - link.mean);
     set_mean(link, sample.received);
     link.unoccluded = sample.unoccluded;
+    link.tint = tint_of(visibility, sample.by_channel, sample.received);
     finish(link, sample.received, sample.unoccluded, link.rays + sample.rays);
   }
   return link;
@@ -346,6 +377,7 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
       static_cast<uint32_t>(std::clamp(std::ceil(wanted * kFreshRays / static_cast<float>(per_point)),
                                        static_cast<float>(kFreshPoints), most));
   float received = 0, unoccluded = 0;
+  vec3 by_channel(0);
   uint32_t rays = 0;
   PlaneFit fit(r);
   for (uint32_t i = 0; i < points; ++i) {
@@ -371,9 +403,12 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
                                               ray_count, view != nullptr ? &seen : nullptr);
       arriving = count_seen ? share.seen : factor - share.hidden;
       if (count_seen) unoccluded += share.seen + share.hidden;
+      by_channel += arriving - share.seen + share.by_channel;
     } else {
+      vec3 tint;
       arriving = factor * visibility.fraction(pool, there, x.position, x.normal, per_point, seed + i,
-                                              ray_count, likely);
+                                              ray_count, likely, &tint);
+      by_channel += arriving * tint;
     }
     received += arriving;
     fit.add(x.position, arriving);
@@ -407,6 +442,7 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     set_mean(link, mean);
   }
   finish(link, received, unoccluded, rays);
+  link.tint = tint_of(visibility, by_channel, received);
   if (view != nullptr) places.choose(*view, link.source, unit_float(hash(seed, 99)));
 }
 

@@ -16,6 +16,21 @@ struct SourceView {
 };
 constexpr uint32_t kNoView = 0xffffffffu;
 
+/// What coloured glass leaves of the light of a link, relative to its mean, which is that of each ray's best
+/// channel: ten bits a channel, of the square root, so that dark channels keep their share. All ones is
+/// white.
+class Tint {
+ public:
+  Tint() = default;
+  explicit Tint(const vec3& colour);
+  bool is_white() const { return bits_ == kWhite; }
+  vec3 colour() const;
+
+ private:
+  static constexpr uint32_t kWhite = 0x3fffffffu;
+  uint32_t bits_ = kWhite;
+};
+
 /// The light path between two elements (sections 4.2.3 and 4.5.3).
 struct Link {
   ElementId receiver = kNoElement, source = kNoElement;
@@ -30,6 +45,7 @@ struct Link {
   float spread = 0;         ///< largest deviation of a sample from what transfer and ambient say of it
   float unoccluded = 0;     ///< mean, were everything visible
   uint32_t view = kNoView;  ///< LinkPool::views, for sources that are unevenly bright
+  Tint tint;                ///< of what gets through
   uint8_t visibility = 0;   ///< share of sample rays that got through, of 255
   uint8_t rays = 0;         ///< how many there were
   bool alive = true;
@@ -42,12 +58,20 @@ struct Link {
 void measure_link(const ElementPool& pool, const Visibility& visibility, Link& link, float tolerance,
                   SourceView* view, RayCount& ray_count);
 
-/// The radiosity that a link's source shows to its receiver; `shown` is RadiosityState's.
-inline vec3 seen_radiosity(const Link& link, std::span<const SourceView> views, std::span<const vec3> shown) {
+/// The radiosity that a link's source shows to its receiver, were there nothing in between; `shown` is
+/// RadiosityState's.
+inline vec3 source_radiosity(const Link& link, std::span<const SourceView> views,
+                             std::span<const vec3> shown) {
   if (link.view == kNoView) return shown[link.source];
   vec3 sum(0);
   for (const ElementId id : views[link.view].elements) sum += shown[id];
   return sum / static_cast<float>(views[link.view].elements.size());
+}
+
+/// The same in the colour in which it arrives.
+inline vec3 seen_radiosity(const Link& link, std::span<const SourceView> views, std::span<const vec3> shown) {
+  const vec3 b = source_radiosity(link, views, shown);
+  return link.tint.is_white() ? b : b * link.tint.colour();
 }
 
 /// Samples the transfer with `points` (4 or 8) receiver points of `rays_per_point` rays each.

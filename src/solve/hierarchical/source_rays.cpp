@@ -28,20 +28,27 @@ Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const
   return ray;
 }
 
-// Transmittance of each of up to 16 rays.
+// Transmittance of each of up to 16 rays; in `colours` by channel, if anything colours light at all.
 void timed_packet(const RayCaster& caster, std::span<const Ray> rays, std::span<float> passing,
-                  RayCount& count) {
+                  std::span<vec3> colours, RayCount& count) {
   const auto start = std::chrono::steady_clock::now();
-  caster.packet_transmittance(rays, passing);
+  caster.packet_transmittance(rays, passing, caster.is_coloured() ? colours : std::span<vec3>());
   const auto time = std::chrono::steady_clock::now() - start;
   count.rays += rays.size();
   count.nanoseconds +=
       static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
 }
 
-float timed_ray(const RayCaster& caster, const Ray& ray, RayCount& count) {
+// The colour of light that sums up to `by_channel`, where its best channel has `best`.
+vec3 tint_of(const vec3& by_channel, float best) {
+  return best > 0 ? by_channel / best : vec3(1);
+}
+
+float timed_ray(const RayCaster& caster, const Ray& ray, RayCount& count, vec3* tint) {
   float passing = 0;
-  timed_packet(caster, {&ray, 1}, {&passing, 1}, count);
+  vec3 colour(1);
+  timed_packet(caster, {&ray, 1}, {&passing, 1}, {&colour, 1}, count);
+  if (tint != nullptr && caster.is_coloured()) *tint = tint_of(colour, passing);
   return passing;
 }
 
@@ -113,12 +120,13 @@ constexpr uint32_t kPacket = 16, kLooked = 8;
 // Share of a light's disc seen from `origin`, by a packet of rays spread evenly over it; of what is above the
 // horizon.
 float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& origin, const vec3& n,
-                    uint32_t turn, RayCount& count) {
+                    uint32_t turn, RayCount& count, vec3* tint) {
   const vec3 across = normalize(std::abs(disc.axis.x) > 0.6f ? vec3(disc.axis.y, -disc.axis.x, 0)
                                                              : vec3(0, disc.axis.z, -disc.axis.y));
   const vec3 up = cross(disc.axis, across);
   std::array<Ray, kPacket> rays;
   std::array<float, kPacket> weight, passing;
+  std::array<vec3, kPacket> colour;
   uint32_t size = 0;
   float all = 0, seen = 0;
   for (uint32_t i = 0; i < kPacket; ++i) {
@@ -137,8 +145,13 @@ float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& 
     all += weight[size++];
   }
   if (size == 0) return 0;
-  timed_packet(caster, {rays.data(), size}, {passing.data(), size}, count);
+  timed_packet(caster, {rays.data(), size}, {passing.data(), size}, {colour.data(), size}, count);
   for (uint32_t k = 0; k < size; ++k) seen += weight[k] * passing[k];
+  if (tint != nullptr && caster.is_coloured()) {
+    vec3 by_channel(0);
+    for (uint32_t k = 0; k < size; ++k) by_channel += weight[k] * colour[k];
+    *tint = tint_of(by_channel, seen);
+  }
   return seen / all;
 }
 
@@ -153,6 +166,8 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
   std::array<Ray, kPacket> found, packet;
   std::array<SurfacePoint, kPacket> at;
   std::array<float, kPacket> weight, share, passing;
+  std::array<vec3, kPacket> colour;
+  const bool coloured = caster->is_coloured();
   std::array<uint32_t, kPacket> chosen;
   for (uint32_t first = 0; first < rays; first += kPacket) {
     const uint32_t batch = std::min(kPacket, rays - first);
@@ -183,45 +198,52 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
       packet[k] = found[chosen[k]];
       share[k] *= static_cast<float>(batch) / static_cast<float>(looked * rays);
     }
-    timed_packet(*caster, {packet.data(), cast}, {passing.data(), cast}, count);
+    timed_packet(*caster, {packet.data(), cast}, {passing.data(), cast}, {colour.data(), cast}, count);
     for (uint32_t k = 0; k < cast; ++k) {
       sum.seen += share[k] * passing[k];
       sum.hidden += share[k] * (1 - passing[k]);
+      if (coloured) sum.by_channel += share[k] * colour[k];
       if (passing[k] <= 0 || !keep || places->count == SeenPoints::kMost) continue;
       places->points[places->count] = at[chosen[k]];
+      places->tints[places->count] = coloured ? tint_of(colour[k], passing[k]) : vec3(1);
       places->weights[places->count++] = share[k] * passing[k];
     }
   }
+  if (!coloured) sum.by_channel = vec3(sum.seen);
   return sum;
 }
 
 float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
-                           uint32_t rays, uint32_t turn, RayCount& count, float unknown) const {
+                           uint32_t rays, uint32_t turn, RayCount& count, float unknown, vec3* tint) const {
+  if (tint != nullptr) *tint = vec3(1);
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
     const LightDisc disc = light_disc(pool.light(source), x);
-    if (disc.sine > 0) return disc_fraction(*caster, disc, origin, n, hash(turn ^ seed, source), count);
+    if (disc.sine > 0) return disc_fraction(*caster, disc, origin, n, hash(turn ^ seed, source), count, tint);
     Ray ray{origin, -pool.light(source).direction};
     if (e.kind == ElementKind::kPoint) {
       ray.direction = e.centre - origin;
       ray.far = 0.9999f;
     }
-    return timed_ray(*caster, ray, count);
+    return timed_ray(*caster, ray, count, tint);
   }
   const SeenShare share = look(pool, source, x, n, rays, turn, count);
-  if (share.seen + share.hidden > 0) return share.seen / (share.seen + share.hidden);
+  if (share.seen + share.hidden > 0) {
+    if (tint != nullptr && caster->is_coloured()) *tint = tint_of(share.by_channel, share.seen);
+    return share.seen / (share.seen + share.hidden);
+  }
   // No sample faces x although a little of the source does (a silhouette): a ray to just before it must do.
   if (e.kind == ElementKind::kSky) {
     const vec3 m = sky_form_factor(n, pool.sky_corners(source));
-    return m == vec3(0) ? unknown : timed_ray(*caster, {origin, normalize(m)}, count);
+    return m == vec3(0) ? unknown : timed_ray(*caster, {origin, normalize(m)}, count, tint);
   }
   const vec3 to_centre = e.centre - origin;
   const float distance = length(to_centre);
   if (distance <= 1.01f * e.radius) return unknown;
   Ray ray{origin, to_centre};
   ray.far = 1 - 1.01f * e.radius / distance;
-  return timed_ray(*caster, ray, count);
+  return timed_ray(*caster, ray, count, tint);
 }
 
 }  // namespace goldthread

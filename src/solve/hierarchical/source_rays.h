@@ -23,6 +23,7 @@ struct SeenPoints {
   static constexpr uint32_t kMost = 16;
   std::array<SurfacePoint, kMost> points;
   std::array<float, kMost> weights;
+  std::array<vec3, kMost> tints;  ///< of the light that gets through, its best channel 1
   uint32_t count = 0;
 };
 
@@ -30,6 +31,7 @@ struct SeenPoints {
 /// unoccluded form factor; of the sky only their ratio means anything.
 struct SeenShare {
   float seen = 0, hidden = 0;
+  vec3 by_channel{0};  ///< as `seen`, which is by each ray's best channel
 };
 
 /// Rays between points and elements.
@@ -46,9 +48,10 @@ struct Visibility {
 
   /// Share of `source` seen from `x`, 0..1. A ratio of two sums over few rays: less noisy than `look`, and a
   /// little biased. `unknown` is the answer where the rays can tell nothing: `x` lies amid the source, and no
-  /// place that was drawn faces it.
+  /// place that was drawn faces it. `tint`, if given, becomes the colour of what is seen, relative to that
+  /// share: 1 but behind coloured glass, and where nothing is seen.
   float fraction(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                 uint32_t turn, RayCount& count, float unknown = 0) const;
+                 uint32_t turn, RayCount& count, float unknown = 0, vec3* tint = nullptr) const;
 };
 
 }  // namespace goldthread

@@ -73,6 +73,17 @@ void add_sun(CLI::App& verb, LightTexts& texts) {
       ->type_name("M")
       ->check(CLI::Range(0.0, 1e6).description(""))
       ->group(kGroup);
+  verb.add_option("--ies", texts.profiles,
+                  "photometric file (LM-63) by which all point and spot lights shine, or those called\n"
+                  "NAME: its candela instead of their cone and intensity; colours stay. Repeatable")
+      ->type_name("[NAME=]FILE")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->group(kGroup);
+  verb.add_option("--ies-scale", texts.options.profile_scale, "multiplies the candela of --ies (1)")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 1e9).description(""))
+      ->group(kGroup);
   verb.add_option("--place", texts.place, "degrees north and east, as 59.33,18.07: places the sun")
       ->type_name("LAT,LON")
       ->group(kGroup);
@@ -82,6 +93,25 @@ void add_sun(CLI::App& verb, LightTexts& texts) {
       ->type_name("H")
       ->check(CLI::Range(-24.0, 24.0).description(""))
       ->group(kGroup);
+}
+
+// "NAME=FILE" or "FILE"; "=FILE" where the file's own name has the sign.
+LightOptions::Profile profile_of(const std::string& text) {
+  const size_t sign = text.find('=');
+  if (sign == std::string::npos) return {text, ""};
+  return {text.substr(sign + 1), text.substr(0, sign)};
+}
+
+Status finish_profiles(const CLI::App& verb, const LightTexts& texts, LightOptions& options) {
+  for (const std::string& text : texts.profiles) {
+    options.profiles.push_back(profile_of(text));
+    if (options.profiles.back().file.empty())
+      return usage_error("--ies: '" + text + "' names no file",
+                         "write --ies lamp.ies or --ies NAME=lamp.ies");
+  }
+  if (verb.count("--ies-scale") > 0 && options.profiles.empty())
+    return usage_error("--ies-scale is of the files of --ies", "add --ies FILE");
+  return Nothing{};
 }
 
 Status finish_moment(const CLI::App& verb, const LightTexts& texts, LightOptions& options) {
@@ -157,6 +187,7 @@ Status finish_light(const CLI::App& verb, const LightTexts& texts, LightOptions&
   if (verb.count("--sun-diameter") > 0 && verb.count("--sun") == 0)
     return usage_error("the sun has a size but does not shine", "add --sun");
   if (verb.count("--lamp-radius") > 0) options.lamp_radius = texts.lamp_radius;
+  if (Status status = finish_profiles(verb, texts, options); !status) return status;
   if (Status status = finish_moment(verb, texts, options); !status) return status;
   return finish_sun(verb, texts, options);
 }

@@ -17,6 +17,7 @@ struct LightTexts {
   std::string sky, place, date, time;
   double time_zone = 0;
   float lamp_radius = 0;
+  std::vector<std::string> profiles;
   LightOptions::Sun sun;
   bool lone_sun = false;  ///< --sun came without a number
   LightOptions options;   ///< those that need no more parsing

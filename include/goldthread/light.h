@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace goldthread {
 
@@ -32,6 +33,15 @@ struct LightOptions {
 
   std::optional<float>
       lamp_radius;  ///< metres: makes the scene's point and spot lights balls, 0 points again
+
+  /// A photometric file (IES LM-63) for the scene's point and spot lights, instead of their cones and
+  /// intensities. They keep place, direction and colour.
+  struct Profile {
+    std::string file;
+    std::string lamp;  ///< the lights that are called so; empty for all
+  };
+  std::vector<Profile> profiles;  ///< of two for one light the later counts
+  float profile_scale = 1;        ///< of those files' candela
 
   /// uniform, overcast, clear, cie1 to cie16 or preetham; empty for none. Without `sky` as bright as the
   /// IES's mean sky of its kind with the sun at that height (Recommended Practice for the Calculation of

@@ -5,7 +5,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
+
+#include "files/ies_write.h"
 
 namespace goldthread {
 namespace {
@@ -102,7 +105,7 @@ mat4 looking(const vec3& position, const vec3& forward, const vec3& up) {
   return frame;
 }
 
-Json describe(const Light& light) {
+Json describe_punctual(const Light& light) {
   constexpr const char* kNames[] = {"point", "spot", "directional"};
   const vec3 colour = glm::max(light.intensity, vec3(0));
   const float intensity = std::max(colour.x, std::max(colour.y, colour.z));
@@ -119,6 +122,50 @@ Json describe(const Light& light) {
   }
   return json;
 }
+
+/// Puts lights into the document's extensions. Each function returns a node's extensions that name the light.
+class LightBuilder {
+ public:
+  explicit LightBuilder(GltfDocument& document) : document_(document) {}
+
+  Json punctual(const Light& light) {
+    return {{"KHR_lights_punctual", {{"light", append("KHR_lights_punctual", describe_punctual(light))}}}};
+  }
+
+  Json profiled(const Light& light) {
+    const auto [place, is_new] = profiles_.try_emplace(light.profile.get(), 0u);
+    if (is_new) place->second = append("EXT_lights_ies", describe(*light.profile));
+    const vec3 colour = glm::max(light.intensity, vec3(0));
+    const float candela = std::max(colour.x, std::max(colour.y, colour.z));
+    const vec3 hue = candela > 0 ? colour / candela : vec3(1);
+    return {{"EXT_lights_ies",
+             {{"light", place->second},
+              {"multiplier", shortest(candela / kFileCandela)},
+              {"color", json_array({&hue.x, 3})}}}};
+  }
+
+ private:
+  static constexpr float kFileCandela = 1000;  // peaks of the files that are written
+
+  uint32_t append(const char* extension, Json light) {
+    use_extension(document_, extension);
+    Json& lights = document_.json["extensions"][extension]["lights"];
+    lights.push_back(std::move(light));
+    return static_cast<uint32_t>(lights.size() - 1);
+  }
+
+  Json describe(const LightProfile& profile) {
+    const std::string text = ies_text(profile, kFileCandela);
+    Json json = {
+        {"bufferView", append_view(document_, {reinterpret_cast<const uint8_t*>(text.data()), text.size()})},
+        {"mimeType", "application/x-ies-lm-63"}};
+    if (!profile.name.empty()) json["name"] = profile.name;
+    return json;
+  }
+
+  GltfDocument& document_;
+  std::map<const LightProfile*, uint32_t> profiles_;
+};
 
 Json describe(const Camera& camera, float diagonal) {
   Json json = Json::object();
@@ -155,14 +202,12 @@ uint32_t build_node(GltfDocument& document, const mat4& transform, Json content)
 }
 
 void build_lights(GltfDocument& document, const Scene& scene) {
-  if (scene.lights.empty()) return;
-  use_extension(document, "KHR_lights_punctual");
-  for (size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
-    document.json["extensions"]["KHR_lights_punctual"]["lights"].push_back(describe(light));
-    Json node = {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}};
+  LightBuilder builder(document);
+  for (const Light& light : scene.lights) {
+    Json node = {{"extensions", light.profile ? builder.profiled(light) : builder.punctual(light)}};
     if (!light.name.empty()) node["name"] = light.name;
-    build_node(document, looking(light.position, light.direction, vec3(0, 1, 0)), std::move(node));
+    const vec3 up = light.profile ? cross(light.across, light.direction) : vec3(0, 1, 0);
+    build_node(document, looking(light.position, light.direction, up), std::move(node));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "files/gltf_load.h"
 #include "files/gltf_read_accessors.h"
 #include "files/gltf_read_container.h"
+#include "files/gltf_read_lights.h"
 #include "files/gltf_read_materials.h"
 #include "files/gltf_read_nodes.h"
 #include "files/gltf_read_primitives.h"

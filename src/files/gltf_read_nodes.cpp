@@ -96,25 +96,6 @@ vec3 direction(const glm::dmat4& world, const glm::dvec3& local, const vec3& oth
   return normalize_or(vec3(glm::dmat3(world) * local), otherwise);
 }
 
-Light convert_light(const tinygltf::Light& source, const glm::dmat4& world) {
-  Light light;
-  if (source.type == "spot") light.kind = LightKind::kSpot;
-  if (source.type == "directional") light.kind = LightKind::kDirectional;
-  light.intensity = vector_of(source.color, vec3(1)) * float(source.intensity);
-  light.position = vec3(world[3]);
-  light.direction = direction(world, {0, 0, -1}, vec3(0, 0, -1));
-  light.outer_cone = std::clamp(float(source.spot.outerConeAngle), 0.0f, kPi / 2);
-  light.inner_cone = std::clamp(float(source.spot.innerConeAngle), 0.0f, light.outer_cone);
-  light.range = std::max(float(source.range), 0.0f);
-  // The format has no word for a lamp's size; exporters that keep it write metres in the extras.
-  const double radius =
-      source.extras.IsObject() && source.extras.Has("radius") && source.extras.Get("radius").IsNumber()
-          ? source.extras.Get("radius").GetNumberAsDouble()
-          : 0;
-  if (light.kind != LightKind::kDirectional && radius > 0 && radius < 1e6) light.radius = float(radius);
-  return light;
-}
-
 Camera convert_camera(const tinygltf::Camera& source, const glm::dmat4& world) {
   Camera camera;
   camera.position = vec3(world[3]);
@@ -154,26 +135,6 @@ Result<NodePlacements> place_nodes(const tinygltf::Model& model, const std::stri
     if (parent != -1 && nodes.shown[size_t(parent)]) nodes.shown[node] = true;
   }
   return nodes;
-}
-
-Status read_gltf_lights(const tinygltf::Model& model, const std::string& file, const NodePlacements& nodes,
-                        Scene& scene) {
-  for (size_t i = 0; i < model.nodes.size(); ++i) {
-    const auto* extension = find_extension(model.nodes[i].extensions, "KHR_lights_punctual");
-    if (!nodes.shown[i] || !extension) continue;
-    const int index = int_member(*extension, "light").value_or(-1);
-    if (size_t(index) >= model.lights.size())
-      return bad_input(file, node_place(i), fmt::format("there is no light {}", index), kExportAgain);
-    const tinygltf::Light& source = model.lights[size_t(index)];
-    if (source.type != "point" && source.type != "spot" && source.type != "directional") {
-      scene.warnings.push_back(fmt::format("light {}: kind \"{}\" is unknown; left out", index, source.type));
-      continue;
-    }
-    Light light = convert_light(source, nodes.world[i]);
-    light.name = source.name.empty() ? model.nodes[i].name : source.name;
-    scene.lights.push_back(std::move(light));
-  }
-  return Nothing{};
 }
 
 Status read_gltf_cameras(const tinygltf::Model& model, const std::string& file, const NodePlacements& nodes,

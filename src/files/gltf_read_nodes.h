@@ -1,4 +1,4 @@
-// The node hierarchy of a glTF file, and the lights and cameras that hang in it.
+// The node hierarchy of a glTF file, and the cameras that hang in it.
 #pragma once
 #include <string>
 #include <vector>
@@ -19,9 +19,7 @@ struct NodePlacements {
 /// Nodes that form a cycle, have two parents or do not exist are an Error.
 Result<NodePlacements> place_nodes(const tinygltf::Model& model, const std::string& file);
 
-/// Appends the KHR_lights_punctual lights and the cameras of all shown nodes, in the order of the nodes.
-Status read_gltf_lights(const tinygltf::Model& model, const std::string& file, const NodePlacements& nodes,
-                        Scene& scene);
+/// Appends the cameras of all shown nodes, in the order of the nodes.
 Status read_gltf_cameras(const tinygltf::Model& model, const std::string& file, const NodePlacements& nodes,
                          Scene& scene);
 

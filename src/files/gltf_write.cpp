@@ -67,6 +67,22 @@ void embed_images(GltfDocument& document) {
   }
 }
 
+/// The photometric files of EXT_lights_ies.
+void embed_profiles(GltfDocument& document) {
+  const Json::json_pointer place("/extensions/EXT_lights_ies/lights");
+  if (!document.json.contains(place) || !document.json[place].is_array()) return;
+  for (Json& profile : document.json[place]) {
+    if (!profile.is_object() || !profile.contains("uri") || !profile["uri"].is_string()) continue;
+    const std::string uri = profile["uri"];
+    if (uri.starts_with("data:")) continue;
+    const Result<Bytes> bytes = fetch_uri(uri, document.source_file);
+    if (!bytes || bytes->empty()) continue;
+    profile.erase("uri");
+    profile["bufferView"] = append_view(document, *bytes);
+    profile["mimeType"] = "application/x-ies-lm-63";
+  }
+}
+
 /// Buffer 0 becomes what `bin` holds now; `uri` is empty in a GLB.
 void describe_buffer(GltfDocument& document, const std::string& uri) {
   document.bin.resize((document.bin.size() + 3) / 4 * 4);
@@ -153,7 +169,10 @@ Status write_gltf_document(const std::string& file, GltfDocument document) {
   const bool beside_source =
       extension == ".gltf" && same_folder(fs::path(document.source_file).parent_path().string(),
                                           fs::path(file).parent_path().string());
-  if (!beside_source) embed_images(document);
+  if (!beside_source) {
+    embed_images(document);
+    embed_profiles(document);
+  }
   return extension == ".glb" ? write_glb(file, document) : write_gltf_and_bin(file, document);
 }
 

@@ -1,8 +1,12 @@
 #include "files/solution_archive.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstring>
+#include <map>
+#include <memory>
 #include <type_traits>
 
 namespace goldthread {
@@ -141,6 +145,66 @@ StoredSky store(const Sky& sky) {
   return stored;
 }
 
+// A lamp as plain values: profiles, which lamps share, lie beside them.
+struct StoredLight {
+  Light light;
+  uint32_t profile = kNoProfile;
+  static constexpr uint32_t kNoProfile = 0xffffffffu;
+};
+
+struct StoredLights {
+  std::vector<LightProfile> profiles;
+  std::vector<StoredLight> lights;
+};
+
+StoredLights store(const std::vector<Light>& lights) {
+  StoredLights stored;
+  std::map<const LightProfile*, uint32_t> known;
+  for (const Light& light : lights) {
+    StoredLight& s = stored.lights.emplace_back();
+    s.light = light;
+    if (!light.profile) continue;
+    const auto [place, is_new] =
+        known.try_emplace(light.profile.get(), static_cast<uint32_t>(stored.profiles.size()));
+    if (is_new) stored.profiles.push_back(*light.profile);
+    s.profile = place->second;
+  }
+  return stored;
+}
+
+bool ascends(const std::vector<float>& angles) {
+  // What is not a number is neither more nor less.
+  for (size_t i = 0; i + 1 < angles.size(); ++i)
+    if (!(angles[i] < angles[i + 1])) return false;
+  return !angles.empty() && std::isfinite(angles.front()) && std::isfinite(angles.back());
+}
+
+bool is_sound(const LightProfile& profile) {
+  return profile.pole <= LightProfile::Pole::kSide && ascends(profile.polar) && ascends(profile.azimuth) &&
+         profile.candela.size() / profile.polar.size() == profile.azimuth.size() &&
+         profile.candela.size() % profile.polar.size() == 0 &&
+         std::all_of(profile.candela.begin(), profile.candela.end(),
+                     [](float share) { return share >= 0 && share <= 1; });
+}
+
+// False for lamps that cannot be.
+bool restore(StoredLights stored, std::vector<Light>& lights) {
+  std::vector<std::shared_ptr<const LightProfile>> profiles;
+  for (LightProfile& profile : stored.profiles) {
+    if (!is_sound(profile)) return false;
+    profiles.push_back(std::make_shared<const LightProfile>(std::move(profile)));
+  }
+  lights.clear();
+  for (StoredLight& s : stored.lights) {
+    if (s.profile != StoredLight::kNoProfile) {
+      if (s.profile >= profiles.size()) return false;
+      s.light.profile = profiles[s.profile];
+    }
+    lights.push_back(std::move(s.light));
+  }
+  return true;
+}
+
 // False for one that cannot be.
 bool restore(const StoredSky& stored, Sky& sky) {
   sky = Sky();
@@ -201,7 +265,19 @@ void fields(A& a, V& v) {
 template <typename A, Is<Light> V>
 void fields(A& a, V& v) {
   a(v.name, v.kind, v.intensity, v.position, v.direction, v.inner_cone, v.outer_cone, v.range,
-    v.angular_diameter, v.radius);
+    v.angular_diameter, v.radius, v.across);
+}
+template <typename A, Is<StoredLight> V>
+void fields(A& a, V& v) {
+  a(v.light, v.profile);
+}
+template <typename A, Is<LightProfile> V>
+void fields(A& a, V& v) {
+  a(v.name, v.pole, v.polar, v.azimuth, v.candela, v.changes_with_tilt);
+}
+template <typename A, Is<StoredLights> V>
+void fields(A& a, V& v) {
+  a(v.profiles, v.lights);
 }
 template <typename A, Is<SkyDescription> V>
 void fields(A& a, V& v) {
@@ -259,6 +335,16 @@ bool visit_passages(Unpacker& a, std::vector<Material>& materials) {
   return true;
 }
 
+bool visit_lights(Packer& a, const std::vector<Light>& lights) {
+  a(store(lights));
+  return true;
+}
+bool visit_lights(Unpacker& a, std::vector<Light>& lights) {
+  StoredLights stored;
+  a(stored);
+  return a.finished() && restore(std::move(stored), lights);
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
@@ -270,7 +356,7 @@ bool visit_section(A& a, V& solution, const std::string& name) {
   if (name == "passages") return visit_passages(a, scene.materials);
   if (name == "meshes") return a(scene.meshes), true;
   if (name == "instances") return a(scene.instances), true;
-  if (name == "lights") return a(scene.lights), true;
+  if (name == "lights") return visit_lights(a, scene.lights);
   if (name == "cameras") return a(scene.cameras), true;
   if (name == "lighting") return a(solution.lighting.revision, solution.lighting.primitives), true;
   return false;

@@ -15,7 +15,7 @@ namespace goldthread {
 namespace {
 
 constexpr int kApplicationId = 0x676f6c64;  // "gold"
-constexpr int kFormatVersion = 2;
+constexpr int kFormatVersion = 3;
 constexpr size_t kPartBytes = size_t{64} << 20;  // far below SQLite's limit for one value
 constexpr const char* kCure = "bake the scene again";
 

@@ -1,8 +1,10 @@
 // Lights that have no geometry. Photometric units, linear Rec.709 (KHR_lights_punctual).
 #pragma once
+#include <memory>
 #include <string>
 
 #include "math/vec.h"
+#include "scene/light_profile.h"
 
 namespace goldthread {
 
@@ -11,7 +13,9 @@ enum class LightKind : uint8_t { kPoint, kSpot, kDirectional };
 struct Light {
   std::string name;
   LightKind kind = LightKind::kPoint;
-  vec3 intensity{0};         ///< colour * intensity: candela (point, spot) or lux (directional)
+  /// Colour * intensity: candela (point, spot; of one with a profile where it is brightest) or lux
+  /// (directional).
+  vec3 intensity{0};
   vec3 position{0};          ///< world, metres
   vec3 direction{0, 0, -1};  ///< world, unit: where the light shines to
   float inner_cone = 0;      ///< radians from the axis
@@ -21,6 +25,15 @@ struct Light {
   /// Metres, of a point or spot light that is an even ball: its intensity is that of the whole, and what its
   /// cone says holds for the way from its centre. 0 for a point; so it is taken for places within it, too.
   float radius = 0;
+  /// World, unit, square to `direction`: +X of the light's own frame, which shines to its -Z. It counts where
+  /// there is a profile.
+  vec3 across{1, 0, 0};
+  /// Of a point or spot light, instead of its cone: shares of the intensity by direction. Null for none.
+  std::shared_ptr<const LightProfile> profile = nullptr;
 };
+
+/// Turns a light to shine along `direction`, its +X along `across` or as near to it as is square to that.
+/// Neither need be of length 1.
+void aim(Light& light, const vec3& direction, const vec3& across);
 
 }  // namespace goldthread

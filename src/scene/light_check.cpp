@@ -30,9 +30,10 @@ void put_out_absurd_lights(Scene& scene) {
     if (put_out(light.intensity, found) >= 0)
       scene.warnings.push_back(fmt::format("{}: an intensity of {:g} is no light; taken as 0",
                                            named("light", i, light.name), static_cast<double>(found)));
-    if (is_finite(light.position) && is_finite(light.direction)) continue;
+    if (is_finite(light.position) && is_finite(light.direction) && is_finite(light.across)) continue;
     light.position = vec3(0);
     light.direction = vec3(0, 0, -1);
+    light.across = vec3(1, 0, 0);
     light.intensity = vec3(0);
     scene.warnings.push_back(fmt::format("{}: it is nowhere; taken as dark", named("light", i, light.name)));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace goldthread {
 namespace {
@@ -131,6 +132,13 @@ double LightProfile::luminous_flux() const {
 
 float LightProfile::peak() const {
   return candela.empty() ? 0 : *std::max_element(candela.begin(), candela.end());
+}
+
+SharedProfile share_profile(LightProfile profile) {
+  const float peak = profile.peak();
+  if (peak > 0)
+    for (float& value : profile.candela) value /= peak;
+  return {std::make_shared<const LightProfile>(std::move(profile)), peak};
 }
 
 LightProfile type_c_profile(const PhotometricGrid& grid) {

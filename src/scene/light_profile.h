@@ -1,5 +1,7 @@
 // Luminous intensity by direction, as photometric laboratories measure it.
 #pragma once
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "math/vec.h"
@@ -21,6 +23,7 @@ struct LightProfile {
   std::vector<float> polar;    ///< degrees, ascending, within 0 to 180
   std::vector<float> azimuth;  ///< degrees, ascending, over 360 at the most; a single one: the same all round
   std::vector<float> candela;  ///< at [azimuth * polar.size() + polar]
+  std::string name;            ///< what it was read from, for people
   /// The lamp's output changes as the luminaire is tilted. `candela` holds that of one that is not.
   bool changes_with_tilt = false;
 
@@ -33,6 +36,14 @@ struct LightProfile {
   /// The greatest intensity, candela.
   float peak() const;
 };
+
+/// A profile as many lamps may share it: its candela as shares of the greatest, and that, candela. One that
+/// is dark has shares of 0.
+struct SharedProfile {
+  std::shared_ptr<const LightProfile> shares;
+  float peak = 0;
+};
+SharedProfile share_profile(LightProfile profile);
 
 /// Candela as a photometric file lists them. Angles in degrees, ascending.
 struct PhotometricGrid {

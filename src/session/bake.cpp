@@ -229,7 +229,8 @@ Status Bake::build_hierarchies(const CancelToken& stop) {
                    surfaces_.face_clusters,
                    solver_->pool().volume_clusters(),
                    scene_.lights.size() + (scene_.sky.present() ? 1 : 0) + count_emitters(surfaces_),
-                   surfaces_.area};
+                   surfaces_.area,
+                   profiles_in(scene_)};
   return Nothing{};
 }
 

@@ -9,6 +9,7 @@
 #include "goldthread/bake.h"
 #include "math/colour.h"
 #include "session/mesh_facts.h"
+#include "session/profile_facts.h"
 
 namespace goldthread {
 namespace {
@@ -151,6 +152,8 @@ std::string counts_text(const Scene& scene, const SceneFacts& facts) {
                                scene.instances.size(), scene.meshes.size(), facts.primitives));
   add("materials", fmt::format("{}, {} textures", scene.materials.size(), scene.images.size()));
   add("lamps", fmt::format("{}", scene.lights.size()));
+  for (const ProfileUse& use : profiles_in(scene))
+    add("", fmt::format("{} by {}, {:.4g} lm", use.lamps, use.name, use.lumens));
   add("cameras", fmt::format("{}", scene.cameras.size()));
   add("size", fmt::format("{:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z));
   add("area", fmt::format("{:.4g} m2", facts.light.area));
@@ -180,6 +183,7 @@ nlohmann::ordered_json facts_json(const Scene& scene, const SceneFacts& facts) {
                                  {"textures", scene.images.size()},
                                  {"lights", scene.lights.size()},
                                  {"cameras", scene.cameras.size()}};
+  json["light_profiles"] = to_json(profiles_in(scene));
   if (!facts.bounds.empty())
     json["bounds"] = {{"low", to_json(facts.bounds.low)}, {"high", to_json(facts.bounds.high)}};
   json["area_m2"] = facts.light.area;

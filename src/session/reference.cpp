@@ -16,6 +16,7 @@
 #include "math/tone_map.h"
 #include "session/light_map.h"
 #include "session/light_setup.h"
+#include "session/profile_facts.h"
 #include "session/reference_options.h"
 #include "session/reference_picture.h"
 #include "session/reference_points.h"
@@ -85,6 +86,7 @@ class Run {
   Status write_light_maps(const SavedEstimate& estimate);
   Status write_json(const SavedEstimate& estimate);
   void describe_points(const SavedEstimate& estimate);
+  void name_profiles();
   void describe_run(Json& figures, uint64_t rays, double seconds, double ray_share, StopReason reason);
   StopRules rules(uint64_t usual_samples) const;
   template <typename Work>
@@ -275,6 +277,7 @@ void Run::describe_points(const SavedEstimate& estimate) {
   if (without > 0)
     result_.warnings.push_back(fmt::format("{} of {} points have no samples yet", without, count));
   figures_["scene"] = scene_.file;
+  name_profiles();
   figures_["samples"] = {{"least", least}, {"most", most}};
   figures_["mean_relative_error"] = error;
   figures_["irradiance_lx"] = {{"least", low}, {"mean", mean}, {"most", high}};
@@ -283,6 +286,10 @@ void Run::describe_points(const SavedEstimate& estimate) {
       "lx\n",
       count, least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most), 100 * error,
       low, high, mean);
+}
+
+void Run::name_profiles() {
+  if (const auto uses = profiles_in(scene_); !uses.empty()) figures_["light_profiles"] = to_json(uses);
 }
 
 void Run::describe_run(Json& figures, uint64_t rays, double seconds, double ray_share, StopReason reason) {
@@ -351,6 +358,7 @@ Status Run::paint() {
   });
   figures_["scene"] = scene_.file;
   figures_["picture"] = {{"width", traced.image.width}, {"height", traced.image.height}};
+  name_profiles();
   figures_["samples"] = {{"least", traced.least_samples}, {"most", traced.most_samples}};
   figures_["mean_relative_error"] = traced.relative_error;
   result_.summary =

@@ -16,6 +16,7 @@ std::string BakeReport::json() const {
                 {"volume_clusters", scene.volume_clusters},
                 {"lights", scene.lights},
                 {"area_m2", scene.area_m2}};
+  if (!scene.light_profiles.empty()) j["scene"]["light_profiles"] = to_json(scene.light_profiles);
   j["seconds"] = {{"load", seconds.load},
                   {"preprocess", seconds.preprocess},
                   {"face_clusters", seconds.face_clusters},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "session/power_balance.h"
+#include "session/profile_facts.h"
 
 namespace goldthread {
 
@@ -13,6 +14,7 @@ struct BakeReport {
   struct {
     uint64_t triangles = 0, surfaces = 0, face_clusters = 0, volume_clusters = 0, lights = 0;
     double area_m2 = 0;
+    std::vector<ProfileUse> light_profiles;
   } scene;
   struct {
     double load = 0, preprocess = 0, face_clusters = 0, volume_clusters = 0, ray_bvh = 0, first_image = 0,

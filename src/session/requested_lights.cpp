@@ -10,6 +10,7 @@
 #include "files/file_name.h"
 #include "files/image_read.h"
 #include "scene/sun.h"
+#include "session/requested_profiles.h"
 
 namespace goldthread {
 namespace {
@@ -149,6 +150,8 @@ Status set_sizes(Scene& scene, const LightOptions& options) {
 Status add_requested_lights(Scene& scene, const LightOptions& options) {
   if (Status status = check_one_sky(options); !status) return status;
   if (Status status = set_sizes(scene, options); !status) return status;
+  if (Status status = set_requested_profiles(scene, options); !status) return status;
+  warn_of_tilted_lamps(scene);
   const Result<vec3> to_sun = direction_to_sun(options);
   if (!to_sun) return to_sun.error();
   if (!is_finite(*to_sun) ||

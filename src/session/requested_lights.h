@@ -6,9 +6,9 @@
 
 namespace goldthread {
 
-/// Gives the scene the sky and the sun of `options`, and a warning for what of it had to be changed. Error: a
-/// sky said twice, a model, moment or value that does not exist (kUsage), an environment that cannot be read
-/// or has no pixel that is luminance (kBadInput).
+/// Gives the scene the sky and the sun of `options` and its lamps the sizes and profiles, and a warning for
+/// what of it had to be changed. Error: a sky said twice, a model, moment, lamp or value that does not exist
+/// (kUsage), an environment or profile that cannot be read, or has no pixel that is luminance (kBadInput).
 Status add_requested_lights(Scene& scene, const LightOptions& options);
 
 }  // namespace goldthread

@@ -30,11 +30,14 @@ Lamp::Lamp(const Light& light)
     : light_(light),
       brightness_(luminance(light.intensity)),
       cos_outer_(std::cos(light.outer_cone)),
-      cone_scale_(1 / std::max(0.001f, std::cos(light.inner_cone) - cos_outer_)) {}
+      cone_scale_(1 / std::max(0.001f, std::cos(light.inner_cone) - cos_outer_)),
+      frame_(light.across, cross(-light.direction, light.across), -light.direction) {}
 
-/// Share of the intensity that goes along unit direction `d`: 1 for a point light; for a spot the square of
-/// (d . axis - cos outer) / (cos inner - cos outer), clamped to 0..1 (KHR_lights_punctual).
+/// Share of the intensity that goes along unit direction `d`: what its profile says; without one 1 for a
+/// point light, and for a spot the square of (d . axis - cos outer) / (cos inner - cos outer), clamped to
+/// 0..1 (KHR_lights_punctual).
 float Lamp::cone(const vec3& d) const {
+  if (light_.profile) return light_.profile->intensity(d * frame_);
   if (light_.kind != LightKind::kSpot) return 1;
   const float edge = std::clamp((dot(d, light_.direction) - cos_outer_) * cone_scale_, 0.0f, 1.0f);
   return edge * edge;

@@ -61,6 +61,7 @@ class Lamp {
 
   Light light_;
   float brightness_, cos_outer_, cone_scale_;
+  mat3 frame_;  // the lamp's own axes in the world
 };
 
 /// Draws light for points of a scene, which must outlive it.

@@ -104,6 +104,12 @@ void add_light(Fingerprint& print, const Light& light) {
   print.add(light.direction);
   print.add(vec3(light.inner_cone, light.outer_cone, light.range));
   print.add(vec2(light.angular_diameter, light.radius));
+  if (!light.profile) return;
+  print.add(light.across);
+  print.add(light.profile->pole);
+  for (const std::vector<float>* values :
+       {&light.profile->polar, &light.profile->azimuth, &light.profile->candela})
+    for (const float value : *values) print.add(value);
 }
 
 void add_sky(Fingerprint& print, const Sky& sky) {

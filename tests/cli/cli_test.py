@@ -1,8 +1,10 @@
 """The command line's contract: exit codes, one-line errors, quiet, progress, interruption. Argument: the program."""
 
+import base64
 import json
 import os
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -63,7 +65,8 @@ class CliTest(unittest.TestCase):
                                 ["--time", "--place", "1,2", "--date", "2026-01-02", "--time", "25:00"],
                                 ["--sky-model", "--place", "1,2", "--date", "2026-01-02", "--time", "12:00"],
                                 ["--environment", "--environment-scale", "2"],
-                                ["--sky-model", "--ground-reflectance", "0.2"]]:
+                                ["--sky-model", "--ground-reflectance", "0.2"],
+                                ["--ies", "--ies-scale", "2"], ["--ies", "--ies", "lamp="]]:
             self.assert_fails(2, [wrong], *bake, *options)
         self.assert_fails(2, ["--time-limit"], "bake", "x.glb", "-o", "y.glb", "--time-limit", "0")
         self.assert_fails(2, ["--picture-size"], "bake", "x.glb", "-o", "y.png", "--picture-size", "960x")
@@ -92,6 +95,33 @@ class CliTest(unittest.TestCase):
             self.assert_fails(3, ["cut.ply", "cut off"], *verb, "cut.ply")
             self.assert_fails(3, ["really.obj", ".fbx"], *verb, "really.obj")
         self.assertFalse(self.path("y.glb").exists())
+
+    def test_light_profiles(self):
+        floor = {"asset": {"version": "2.0"},
+                 "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(
+                     struct.pack("<9f", -9, 0, 9, 9, 0, 9, 0, 0, -9)).decode()}],
+                 "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                                "min": [-9, 0, -9], "max": [9, 0, 9]}],
+                 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                 "extensionsUsed": ["KHR_lights_punctual"],
+                 "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}, "name": "lamp"}]}},
+                 "nodes": [{"mesh": 0}, {"translation": [0, 2, 0], "rotation": [-0.5 ** 0.5, 0, 0, 0.5 ** 0.5],
+                                         "extensions": {"KHR_lights_punctual": {"light": 0}}}]}
+        self.path("floor.gltf").write_text(json.dumps(floor))
+        head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n"
+        self.path("lamp.ies").write_text(head + "500 500\n")
+        self.path("cut.ies").write_text(head + "500\n")
+        self.path("places.json").write_text('[{"point": [0, 0, 0], "normal": [0, 1, 0]}]')
+        for verb in (["bake"], ["reference", "--samples", "64"]):
+            points = ["floor.gltf", "--points", "places.json", "--json", "light.json"]
+            self.assert_fails(3, ["cut.ies: line 7", "candela"], *verb, *points, "--ies", "cut.ies")
+            self.assert_fails(2, ["'bulb'", "lamp"], *verb, *points, "--ies", "bulb=lamp.ies")
+            done = self.run_it(*verb, *points, "--ies", "lamp=lamp.ies", "--ies-scale", "2", "--report", "r.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            light = json.loads(self.path("light.json").read_text())["points"][0]["irradiance"]
+            self.assertAlmostEqual(light[1], 2 * 500 / 2 ** 2, delta=0.1)
+            self.assertIn("lamp.ies", self.path("r.json").read_text())
 
     def test_nothing_to_bake_is_4(self):
         self.path("dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

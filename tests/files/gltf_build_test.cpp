@@ -5,9 +5,12 @@
 #include <limits>
 
 #include "files/gltf_builder.h"
+#include "files/ies_read.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/written_gltf.h"
+#include "scene/small_profiles.h"
+#include "scene/small_scenes.h"
 
 namespace goldthread {
 namespace {
@@ -84,6 +87,29 @@ TEST(GltfBuild, ASceneComesBackAsItWas) {
     EXPECT_EQ(after.meshes[0].primitives[0].normals[0], vec3(0, 0, 1));
     EXPECT_EQ(after.meshes[0].primitives[1].colours, before.meshes[0].primitives[1].colours);
     EXPECT_EQ(after.images[0].rgba, before.images[0].rgba);
+  }
+}
+
+TEST(GltfBuild, LightProfilesComeBack) {
+  const TempFolder folder;
+  Scene before = small_scene();
+  for (const std::string& text : {test::lopsided_ies(), test::lopsided_type_b_ies()}) {
+    Light light = test::lamp(LightKind::kPoint, 500, vec3(1, 2, 3));
+    light.intensity = vec3(500, 250, 100);
+    light.profile = share_profile(*parse_ies(text, "")).shares;
+    aim(light, vec3(0.6f, -0.8f, 0), vec3(0, 0, 1));
+    before.lights = {light, light};
+    before.lights[1].intensity *= 2;
+    ASSERT_TRUE(write_scene(folder.path("a.glb"), before));
+    const Scene after = read(folder.path("a.glb"));
+    ASSERT_EQ(after.lights.size(), 2u);
+    EXPECT_EQ(after.lights[0].profile, after.lights[1].profile);
+    EXPECT_LT(length(after.lights[0].intensity - light.intensity), 0.01f);
+    EXPECT_LT(length(after.lights[1].intensity - 2.0f * light.intensity), 0.02f);
+    EXPECT_LT(length(after.lights[0].direction - light.direction), 1e-5f);
+    EXPECT_LT(length(after.lights[0].across - light.across), 1e-5f);
+    for (const vec3& d : {vec3(0, 0, -1), vec3(0.6f, 0, -0.8f), vec3(-0.48f, 0.64f, -0.6f)})
+      EXPECT_NEAR(after.lights[0].profile->intensity(d), light.profile->intensity(d), 1e-4f);
   }
 }
 

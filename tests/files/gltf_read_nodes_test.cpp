@@ -1,4 +1,4 @@
-// Known answers: where nodes put meshes, lights and cameras.
+// Known answers: where nodes put meshes and cameras.
 #include <gmock/gmock.h>
 
 #include "files/gltf_builder.h"
@@ -8,8 +8,6 @@ namespace goldthread {
 namespace {
 
 using namespace test;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr double kHalf = 0.7071067811865476;  ///< sine and cosine of 45 degrees: quarter turns as quaternions
 
@@ -101,76 +99,6 @@ TEST(GltfNodes, HierarchyAHundredThousandDeep) {
   const int depth = 100000;
   for (int i = 0; i < depth; ++i) b.push("nodes", {{"children", {i}}, {"translation", {0, 0, 0.5}}});
   EXPECT_THAT(transformed(read_built(b).instances[0], vec3(0)), Near(vec3(0, 0, depth * 0.5f)));
-}
-
-/// A file with one light on one node.
-GltfBuilder with_light(const json& light, json node) {
-  GltfBuilder b;
-  b.doc["extensionsUsed"] = {"KHR_lights_punctual"};
-  b.doc["extensions"] = {{"KHR_lights_punctual", {{"lights", {light}}}}};
-  node["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
-  b.push("nodes", node);
-  return b;
-}
-
-TEST(GltfLights, PointLightKeepsCandelaUnderScale) {
-  const Scene scene =
-      read_built(with_light({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 200}, {"range", 9}},
-                            {{"translation", {1, 2, 3}}, {"scale", {10, 10, 10}}}));
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_EQ(scene.lights[0].kind, LightKind::kPoint);
-  EXPECT_THAT(scene.lights[0].intensity, Near(vec3(200, 100, 0)));
-  EXPECT_THAT(scene.lights[0].position, Near(vec3(1, 2, 3)));
-  EXPECT_EQ(scene.lights[0].range, 9);
-}
-
-TEST(GltfLights, NegativeIntensityIsDarkAndNamed) {
-  const Scene scene = read_built(with_light({{"type", "point"}, {"name", "hole"}, {"intensity", -200}}, {}));
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_EQ(scene.lights[0].intensity, vec3(0));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("light 0 \"hole\": an intensity of -200")));
-}
-
-TEST(GltfLights, RadiusComesFromTheExtras) {
-  const auto radius = [](const json& light) { return read_built(with_light(light, {})).lights.at(0).radius; };
-  EXPECT_FLOAT_EQ(radius({{"type", "point"}, {"extras", {{"radius", 0.05}}}}), 0.05f);
-  EXPECT_EQ(radius({{"type", "point"}, {"extras", {{"radius", -1}}}}), 0);
-  EXPECT_EQ(radius({{"type", "point"}, {"extras", {{"radius", "large"}}}}), 0);
-  EXPECT_EQ(radius({{"type", "directional"}, {"extras", {{"radius", 3}}}}), 0);
-  EXPECT_EQ(radius({{"type", "point"}}), 0);
-}
-
-TEST(GltfLights, SurroundingsAreNamedAndLeftOut) {
-  GltfBuilder b = with_light({{"type", "point"}}, {});
-  b.doc["extensionsUsed"].push_back("EXT_lights_image_based");
-  EXPECT_THAT(read_built(b).warnings, ElementsAre(HasSubstr("--environment")));
-}
-
-TEST(GltfLights, SpotShinesAlongMinusZTurned) {
-  const Scene scene =
-      read_built(with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}}}},
-                            {{"rotation", {-kHalf, 0, 0, kHalf}}}));  // -z turns to -y
-  EXPECT_EQ(scene.lights[0].kind, LightKind::kSpot);
-  EXPECT_THAT(scene.lights[0].direction, Near(vec3(0, -1, 0)));
-  EXPECT_FLOAT_EQ(scene.lights[0].inner_cone, 0.2f);
-  EXPECT_FLOAT_EQ(scene.lights[0].outer_cone, 0.4f);
-  EXPECT_THAT(scene.lights[0].intensity, Near(vec3(1)));
-}
-
-TEST(GltfLights, DirectionUnderMirrorsAndUnevenScale) {
-  GltfBuilder b =
-      with_light({{"type", "directional"}}, {{"rotation", {0, kHalf, 0, kHalf}}});  // -z turns to -x
-  b.push("nodes", {{"children", {0}}, {"scale", {-3, 1, 1}}});
-  const Scene scene = read_built(b);
-  EXPECT_EQ(scene.lights[0].kind, LightKind::kDirectional);
-  EXPECT_THAT(scene.lights[0].direction, Near(vec3(1, 0, 0)));
-}
-
-TEST(GltfLights, LightsOutsideTheSceneDoNotShine) {
-  GltfBuilder b = with_light({{"type", "point"}}, json::object());
-  b.triangle();
-  b.doc["scenes"] = {{{"nodes", {1}}}};
-  EXPECT_TRUE(read_built(b).lights.empty());
 }
 
 TEST(GltfCameras, PerspectiveLooksAlongMinusZ) {

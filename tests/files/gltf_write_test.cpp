@@ -9,6 +9,7 @@
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/written_gltf.h"
+#include "scene/small_profiles.h"
 
 namespace goldthread {
 namespace {
@@ -28,6 +29,18 @@ Scene read(const std::string& file) {
   Result<Scene> scene = read_scene(file);
   if (!scene) throw std::runtime_error(scene.error().line());
   return *std::move(scene);
+}
+
+/// A lamp by a photometric file that lies beside.
+GltfBuilder profiled_file() {
+  GltfBuilder b;
+  b.triangle();
+  b.doc["accessors"][0]["min"] = {0, 0, 0};
+  b.doc["accessors"][0]["max"] = {1, 1, 0};
+  b.doc["extensionsUsed"] = {"EXT_lights_ies"};
+  b.doc["extensions"]["EXT_lights_ies"]["lights"] = {{{"uri", "lamp.ies"}, {"extras", {{"id", 7}}}}};
+  b.push("nodes", {{"extensions", {{"EXT_lights_ies", {{"light", 0}, {"multiplier", 2.5}}}}}});
+  return b;
 }
 
 /// A file with everything in it that a careless writer loses.
@@ -102,6 +115,27 @@ TEST(GltfWrite, EverythingElseSurvivesInGlb) {
   EXPECT_EQ(written.attribute("_IRRADIANCE_BACK"), written.attribute("_IRRADIANCE"));
   EXPECT_EQ(written.attribute("_CUSTOM"), (std::vector<float>{1, 2, 3}));
   expect_valid(out);
+}
+
+TEST(GltfWrite, LightProfilesAreKeptAndGoWithTheFile) {
+  const TempFolder folder;
+  folder.write("lamp.ies", test::lopsided_ies());
+  const GltfBuilder source = profiled_file();
+  const Scene scene = read(folder.write("in.gltf", source.text()));
+  std::filesystem::create_directories(folder.path("far"));
+  for (const std::string name : {"beside.gltf", "far/out.gltf", "out.glb"}) {
+    const std::string out = folder.path(name);
+    ASSERT_TRUE(write_lit_scene(out, scene, light_all(scene), kVertexLight));
+    const WrittenGltf written(out);
+    EXPECT_EQ(written.json["nodes"][1], source.doc["nodes"][1]);
+    const json& profile = written.json["extensions"]["EXT_lights_ies"]["lights"][0];
+    EXPECT_EQ(profile["extras"]["id"], 7);
+    EXPECT_EQ(profile.contains("uri"), name == "beside.gltf");
+    const Scene again = read(out);
+    ASSERT_EQ(again.lights.size(), 1u);
+    EXPECT_EQ(again.lights[0].profile->candela, scene.lights[0].profile->candela);
+    expect_valid(out);
+  }
 }
 
 TEST(GltfWrite, GltfOutputHasItsBufferBesideItAndKeepsUrisInTheSameFolder) {

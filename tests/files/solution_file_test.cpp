@@ -51,6 +51,15 @@ Solution full_solution() {
   s.scene.instances = {instance};
   s.scene.lights = {
       {"l", LightKind::kSpot, vec3(1, 2, 3), vec3(4), vec3(0, 0, 1), 0.1f, 0.2f, 5, 0.3f, 0.4f}};
+  LightProfile profile;
+  profile.name = "a.ies";
+  profile.polar = {0, 90};
+  profile.azimuth = {0, 90, 360};
+  profile.candela = {1, 0.5f, 0.25f, 0, 1, 0.5f};
+  profile.changes_with_tilt = true;
+  s.scene.lights.insert(s.scene.lights.end(), 2, Light());
+  s.scene.lights[1].across = vec3(0, 0, 1);
+  s.scene.lights[1].profile = s.scene.lights[2].profile = std::make_shared<const LightProfile>(profile);
   s.scene.cameras = {{"c", vec3(1), vec3(0, 1, 0), vec3(0, 0, 1), 0.5f, 2, 1.5f}};
   LitPrimitive lit;
   lit.source_mesh = false;
@@ -102,6 +111,14 @@ TEST(SolutionFile, ComesBackWhole) {
   EXPECT_EQ(scene.lights[0].range, 5);
   EXPECT_EQ(scene.lights[0].angular_diameter, 0.3f);
   EXPECT_EQ(scene.lights[0].radius, 0.4f);
+  EXPECT_FALSE(scene.lights[0].profile);
+  EXPECT_EQ(scene.lights[1].across, vec3(0, 0, 1));
+  ASSERT_TRUE(scene.lights[1].profile);
+  EXPECT_EQ(scene.lights[1].profile, scene.lights[2].profile);
+  EXPECT_EQ(scene.lights[1].profile->name, "a.ies");
+  EXPECT_EQ(scene.lights[1].profile->azimuth, (std::vector<float>{0, 90, 360}));
+  EXPECT_EQ(scene.lights[1].profile->candela, before.scene.lights[1].profile->candela);
+  EXPECT_TRUE(scene.lights[1].profile->changes_with_tilt);
   EXPECT_EQ(scene.cameras[0].aspect, 1.5f);
   EXPECT_EQ(after->lighting.revision, 3u);
   EXPECT_EQ(after->lighting.primitives[0].faces, before.lighting.primitives[0].faces);

@@ -244,6 +244,10 @@ float disc_cosine(const LightDisc& disc, const vec3& n) {
 }
 
 float light_distribution(const Light& light, const vec3& d) {
+  if (light.profile) {
+    const vec3 up = cross(light.across, light.direction);
+    return light.profile->intensity({dot(d, light.across), dot(d, up), -dot(d, light.direction)});
+  }
   if (light.kind != LightKind::kSpot) return 1;
   const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
   const float t = std::clamp((dot(d, light.direction) - outer) / std::max(inner - outer, 1e-3f), 0.0f, 1.0f);

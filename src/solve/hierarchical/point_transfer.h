@@ -58,8 +58,8 @@ LightDisc light_disc(const Light& light, const vec3& x);
 /// Rousiers, Moving Frostbite to Physically Based Rendering, 2014, sphere lights).
 float disc_cosine(const LightDisc& disc, const vec3& n);
 
-/// Share of a point or spot light's intensity that goes in unit direction `d` (KHR_lights_punctual's cone
-/// falloff).
+/// Share of a point or spot light's intensity that goes in unit direction `d`: its profile's, or
+/// KHR_lights_punctual's cone falloff.
 float light_distribution(const Light& light, const vec3& d);
 /// Share that is left at `distance` metres of a light with a range (KHR_lights_punctual), besides the inverse
 /// square.

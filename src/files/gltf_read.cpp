@@ -12,6 +12,7 @@
 #include "files/gltf_read_materials.h"
 #include "files/gltf_read_nodes.h"
 #include "files/gltf_read_primitives.h"
+#include "files/gltf_read_surroundings.h"
 #include "files/gltf_read_values.h"
 
 namespace goldthread {
@@ -161,10 +162,6 @@ Result<Scene> read(const std::string& file) {
   for (const std::string& name : model->extensionsRequired)
     if (!is_known_extension(name))
       scene.warnings.push_back(fmt::format("the file requires {}, which is unknown; read without it", name));
-  for (const std::string& name : model->extensionsUsed)
-    if (name == "EXT_lights_image_based")
-      scene.warnings.emplace_back(
-          "its surroundings (EXT_lights_image_based) are left out: give them as --environment FILE");
   if (Status status = read_gltf_materials(*model, file, scene); !status) return status.error();
   const Result<NodePlacements> nodes = place_nodes(*model, file);
   if (!nodes) return nodes.error();
@@ -173,6 +170,7 @@ Result<Scene> read(const std::string& file) {
     if (nodes->shown[i])
       if (Status status = instances.read(i); !status) return status.error();
   if (Status status = read_gltf_lights(*model, file, *nodes, scene); !status) return status.error();
+  read_gltf_surroundings(*model, scene);
   if (Status status = read_gltf_cameras(*model, file, *nodes, scene); !status) return status.error();
   return scene;
 }

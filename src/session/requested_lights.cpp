@@ -133,6 +133,13 @@ Status check_one_sky(const LightOptions& options) {
   return Nothing{};
 }
 
+/// Says that the sky of the file gives way to the one that is asked for.
+void warn_of_two_skies(Scene& scene, const LightOptions& options) {
+  const bool asked = !options.environment.empty() || !options.sky_model.empty() || options.sky;
+  if (asked && scene.sky.present())
+    scene.warnings.emplace_back("the file's own surroundings give way to the sky that was asked for");
+}
+
 /// Gives lamps the radius that is asked for.
 Status set_sizes(Scene& scene, const LightOptions& options) {
   if (!(options.sun_diameter >= 0 && options.sun_diameter <= 90))
@@ -159,6 +166,7 @@ Status add_requested_lights(Scene& scene, const LightOptions& options) {
     return usage("the sun's place or illuminance is no number", "give finite degrees, and lux of 0 or more");
   const Result<vec3> sunlight = light_of_sun(options, *to_sun);
   if (!sunlight) return sunlight.error();
+  warn_of_two_skies(scene, options);
   if (!options.environment.empty()) {
     const Result<EnvironmentMap> map = requested_map(options, scene);
     if (!map) return map.error();

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import math
 import os
 import signal
 import struct
@@ -10,10 +11,34 @@ import sys
 import tempfile
 import time
 import unittest
+import zlib
 from pathlib import Path
 
 PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/bin/goldthread"
 PROGRAM = str(Path(PROGRAM).resolve())
+
+
+def data_uri(data, kind="application/octet-stream"):
+    return f"data:{kind};base64," + base64.b64encode(data).decode()
+
+
+def floor_document():
+    """A triangle of metres that faces +Y, with a metre of room about the origin, as glTF."""
+    return {"asset": {"version": "2.0"},
+            "buffers": [{"byteLength": 36, "uri": data_uri(struct.pack("<9f", -9, 0, 9, 9, 0, 9, 0, 0, -9))}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [-9, 0, -9], "max": [9, 0, 9]}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0}
+
+
+def grey_png(size, grey):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + bytes([grey] * size) for _ in range(size))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class CliTest(unittest.TestCase):
@@ -97,17 +122,12 @@ class CliTest(unittest.TestCase):
         self.assertFalse(self.path("y.glb").exists())
 
     def test_light_profiles(self):
-        floor = {"asset": {"version": "2.0"},
-                 "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(
-                     struct.pack("<9f", -9, 0, 9, 9, 0, 9, 0, 0, -9)).decode()}],
-                 "bufferViews": [{"buffer": 0, "byteLength": 36}],
-                 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-                                "min": [-9, 0, -9], "max": [9, 0, 9]}],
-                 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-                 "extensionsUsed": ["KHR_lights_punctual"],
-                 "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}, "name": "lamp"}]}},
-                 "nodes": [{"mesh": 0}, {"translation": [0, 2, 0], "rotation": [-0.5 ** 0.5, 0, 0, 0.5 ** 0.5],
-                                         "extensions": {"KHR_lights_punctual": {"light": 0}}}]}
+        floor = floor_document()
+        floor["extensionsUsed"] = ["KHR_lights_punctual"]
+        floor["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}, "name": "lamp"}]}}
+        floor["nodes"].append({"translation": [0, 2, 0], "rotation": [-0.5 ** 0.5, 0, 0, 0.5 ** 0.5],
+                               "extensions": {"KHR_lights_punctual": {"light": 0}}})
+        floor["scenes"][0]["nodes"].append(1)
         self.path("floor.gltf").write_text(json.dumps(floor))
         head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n"
         self.path("lamp.ies").write_text(head + "500 500\n")
@@ -122,6 +142,25 @@ class CliTest(unittest.TestCase):
             light = json.loads(self.path("light.json").read_text())["points"][0]["irradiance"]
             self.assertAlmostEqual(light[1], 2 * 500 / 2 ** 2, delta=0.1)
             self.assertIn("lamp.ies", self.path("r.json").read_text())
+
+    def test_surroundings_of_gltf(self):
+        # A white face above: irradiance pi F, of a square at its half side's distance F = 4 atan(1/sqrt 2)/(pi sqrt 2).
+        # A white face ahead (-Z), on a floor: half the walls' share, F = (1 - that) / 4.
+        above = 4 / math.sqrt(2) * math.atan(1 / math.sqrt(2))
+        self.path("places.json").write_text('[{"point": [0, 0, 0], "normal": [0, 1, 0]}]')
+        for white, exact in ((2, above), (5, (math.pi - above) / 4), (3, 0)):
+            floor = floor_document()
+            floor["images"] = [{"uri": data_uri(grey_png(16, 255 if i == white else 0), "image/png")} for i in range(6)]
+            floor["extensionsUsed"] = ["EXT_lights_image_based"]
+            floor["extensions"] = {"EXT_lights_image_based": {"lights": [
+                {"intensity": 100, "specularImages": [list(range(6))], "specularImageSize": 16}]}}
+            floor["scenes"][0]["extensions"] = {"EXT_lights_image_based": {"light": 0}}
+            self.path("floor.gltf").write_text(json.dumps(floor))
+            for verb in (["bake"], ["reference", "--samples", "16384"]):
+                done = self.run_it(*verb, "floor.gltf", "--points", "places.json", "--json", "light.json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                light = json.loads(self.path("light.json").read_text())["points"][0]["irradiance"]
+                self.assertAlmostEqual(light[1], 100 * exact, delta=0.01 * 100 * exact + 1e-3)
 
     def test_nothing_to_bake_is_4(self):
         self.path("dark.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

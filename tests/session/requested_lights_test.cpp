@@ -41,6 +41,20 @@ TEST(RequestedLights, NothingIsNothing) {
   EXPECT_TRUE(scene.lights.empty());
 }
 
+TEST(RequestedLights, TheFilesOwnSkyStaysUnlessAnotherIsAskedFor) {
+  Scene scene;
+  scene.sky = test::sky_of(test::even_picture(4, 2, vec3(7)));
+  ASSERT_TRUE(add_requested_lights(scene, {}));
+  EXPECT_TRUE(scene.sky.map);
+  EXPECT_TRUE(scene.warnings.empty());
+  LightOptions options;
+  options.sky = {100, 200, 300};
+  ASSERT_TRUE(add_requested_lights(scene, options));
+  EXPECT_EQ(scene.sky.radiance_towards({0, 1, 0}), vec3(100, 200, 300));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("give way"));
+}
+
 TEST(RequestedLights, SkyIsTheZenithsLuminanceOrLuxOnTheGround) {
   LightOptions options = model("overcast");
   options.sky = {100, 200, 300};

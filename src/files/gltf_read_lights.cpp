@@ -24,7 +24,8 @@ float extra_number(const tinygltf::Value& extras, const char* key, double most) 
   return value > 0 && value < most ? float(value) : 0.0f;
 }
 
-/// The format has no word for a lamp's size; exporters that keep it write metres in the extras.
+/// The format has no word for a lamp's size; exporters that keep it write it in the extras: a ball's radius
+/// in metres, and the degrees across a directional light's disc.
 float radius_of(const tinygltf::Value& extras) {
   return extra_number(extras, "radius", 1e6);
 }
@@ -43,7 +44,10 @@ Light convert_light(const tinygltf::Light& source, const glm::dmat4& world) {
   light.outer_cone = std::clamp(float(source.spot.outerConeAngle), 0.0f, kPi / 2);
   light.inner_cone = std::clamp(float(source.spot.innerConeAngle), 0.0f, light.outer_cone);
   light.range = std::max(float(source.range), 0.0f);
-  if (light.kind != LightKind::kDirectional) light.radius = radius_of(source.extras);
+  if (light.kind == LightKind::kDirectional)
+    light.angular_diameter = extra_number(source.extras, "angular_diameter", 90) * kPi / 180;
+  else
+    light.radius = radius_of(source.extras);
   return light;
 }
 

@@ -63,6 +63,20 @@ TEST(GltfLights, RadiusComesFromTheExtras) {
   EXPECT_EQ(radius({{"type", "point"}}), 0);
 }
 
+TEST(GltfLights, ASunsDiameterComesFromTheExtrasInDegrees) {
+  const auto diameter = [](const char* type, const json& value) {
+    return read_built(with_light({{"type", type}, {"extras", {{"angular_diameter", value}}}}, {}))
+        .lights.at(0)
+        .angular_diameter;
+  };
+  EXPECT_NEAR(diameter("directional", 0.533), 0.533f * kPi / 180, 1e-7f);
+  EXPECT_NEAR(diameter("directional", 5), 5 * kPi / 180, 1e-6f);
+  EXPECT_EQ(diameter("directional", -1), 0);
+  EXPECT_EQ(diameter("directional", 120), 0);
+  EXPECT_EQ(diameter("directional", "sun"), 0);
+  EXPECT_EQ(diameter("point", 1), 0);
+}
+
 TEST(GltfLights, SpotShinesAlongMinusZTurned) {
   const Scene scene =
       read_built(with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}}}},

@@ -13,9 +13,36 @@ ElementPool::ElementPool(const SurfaceSet& set) : set_(&set), sky_(set.scene->sk
   triangle_patches_.resize(set.parts.size());
   make_volumes();
   make_lights();
-  if (!set.has_glass) return;
+  if (!set.has_glass && !set.has_translucent) return;
   passages_.resize(elements_.size());
   for (ElementId id = 0; id < elements_.size(); ++id) fill_passage(id);
+  join_sides();
+}
+
+// The two sides of a component are cut alike, each as far as its own light asks: so they share a tree, of
+// which either knows a part.
+void ElementPool::join_sides() {
+  for (size_t s = 1; s < set_->surfaces.size(); ++s) {
+    const Surface &front = set_->surfaces[s - 1], &back = set_->surfaces[s];
+    if (!back.back || front.part != back.part || front.root != back.root) continue;
+    passages_[surface_roots_[s - 1]].twin = surface_roots_[s];
+    passages_[surface_roots_[s]].twin = surface_roots_[s - 1];
+  }
+}
+
+void ElementPool::join_children(ElementId id) {
+  const ElementId twin = passages_[id].twin, child = elements_[id].first_child;
+  if (twin == kNoElement || child == kNoElement || elements_[twin].first_child == kNoElement) return;
+  for (uint32_t c = 0; c < 2; ++c) {
+    passages_[child + c].twin = elements_[twin].first_child + c;
+    passages_[elements_[twin].first_child + c].twin = child + c;
+  }
+}
+
+ElementId ElementPool::behind(ElementId id, size_t end) const {
+  if (passages_.empty()) return kNoElement;
+  while (id != kNoElement && passages_[id].twin >= end) id = elements_[id].parent;
+  return id == kNoElement ? kNoElement : passages_[id].twin;
 }
 
 namespace {
@@ -175,6 +202,7 @@ void ElementPool::expand(std::span<const ElementId> ids) {
   passages_.resize(elements_.size());
   parallel_for(
       elements_.size() - first, [&](size_t i) { fill_passage(first + static_cast<ElementId>(i)); }, 8);
+  for (const ElementId id : ids) join_children(id);
 }
 
 std::vector<ElementId> ElementPool::leaf_elements(uint32_t part, bool back) const {

@@ -57,9 +57,11 @@ struct Element {
   vec3 exitance{0};     ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
 };
 
-/// What elements have besides in scenes with glass.
+/// What elements have besides in scenes with glass or translucent surfaces.
 struct ElementPassage {
-  vec3 stopped{1};  ///< area average of the light that does not go straight on, by channel
+  vec3 stopped{1};              ///< area average of the light that does not go straight on, by channel
+  vec3 transmittance{0};        ///< area average of the light that leaves diffusely on the other side
+  ElementId twin = kNoElement;  ///< the same piece of the other side; kNoElement where that is not cut so far
 };
 
 /// A point on an element's real surface.
@@ -100,6 +102,12 @@ class ElementPool {
   vec3 stopped(ElementId id) const {
     return passages_.empty() ? vec3(elements_[id].coverage) : passages_[id].stopped;
   }
+
+  /// Share of the light on the other side of a surface element that leaves on this one.
+  vec3 transmittance(ElementId id) const { return passages_.empty() ? vec3(0) : passages_[id].transmittance; }
+  /// The smallest element of the other side, numbered below `end`, that holds the whole of `id` on it;
+  /// kNoElement where there is no other side.
+  ElementId behind(ElementId id, size_t end) const;
 
   /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face
   /// cluster.
@@ -166,7 +174,10 @@ class ElementPool {
   void fill_triangle(Element& element, uint32_t triangle) const;
   void fill_patch(Element& element, uint32_t patch) const;
   void fill_paint(Element& element, uint32_t first, uint32_t count) const;
+  bool emits_here(const Element& element) const;
   void fill_passage(ElementId id);
+  void join_sides();
+  void join_children(ElementId id);
   Paint patch_paint(uint32_t patch) const;
   void fill_volume(ElementId id);
   void fill_samples(ElementId id);
@@ -185,7 +196,7 @@ class ElementPool {
 
   const SurfaceSet* set_;
   std::vector<Element> elements_;
-  std::vector<ElementPassage> passages_;  // by element; empty where there is no glass
+  std::vector<ElementPassage> passages_;  // by element; empty where there is neither glass nor translucence
   std::vector<SurfacePoint> samples_;
   std::vector<ElementId> lights_, surface_roots_;
   SkyCells sky_;

@@ -84,10 +84,15 @@ void ElementPool::fill_triangle(Element& element, uint32_t triangle) const {
   fill_paint(element, triangle, 1);
 }
 
+// The back of what is lit behind only because it is translucent gives off no light of its own.
+bool ElementPool::emits_here(const Element& element) const {
+  return !element.back || set_->scene->materials[set_->parts[element.part].material].double_sided;
+}
+
 void ElementPool::fill_paint(Element& element, uint32_t first, uint32_t count) const {
   const Part& part = set_->parts[element.part];
   element.reflectance = part.reflectance;
-  element.exitance = part.exitance;
+  element.exitance = emits_here(element) ? part.exitance : vec3(0);
   element.coverage = part.coverage;
   if (part.triangle_reflectance.empty()) return;
   const TriangleMesh& mesh = set_->tree(part).mesh;
@@ -103,7 +108,7 @@ void ElementPool::fill_paint(Element& element, uint32_t first, uint32_t count) c
   }
   if (area <= 0) return;
   element.reflectance = reflectance / area;
-  element.exitance = exitance / area;
+  element.exitance = emits_here(element) ? exitance / area : vec3(0);
   element.coverage = coverage / area;
 }
 
@@ -134,7 +139,7 @@ void ElementPool::fill_patch(Element& element, uint32_t number) const {
   if (part.triangle_reflectance.empty()) return;
   const Paint paint = patch_paint(number);
   element.reflectance = paint.reflectance;
-  element.exitance = paint.exitance;
+  element.exitance = emits_here(element) ? paint.exitance : vec3(0);
   element.coverage = paint.coverage;
 }
 
@@ -147,7 +152,7 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
   const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2);
   const float scale = 1 / std::max(dot(n, n), 1e-30f);
-  Paint paint{vec3(0), vec3(0), 0, vec3(0)};
+  Paint paint{vec3(0), vec3(0), 0, vec3(0), vec3(0)};
   constexpr uint32_t kPoints = 16;
   ElementPolygon polygon;
   polygon.count = patch.corners;
@@ -162,6 +167,7 @@ Paint ElementPool::patch_paint(uint32_t number) const {
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
     paint.stopped += one.stopped / static_cast<float>(kPoints);
+    paint.transmittance += one.transmittance / static_cast<float>(kPoints);
   }
   return paint;
 }
@@ -173,9 +179,12 @@ void ElementPool::fill_passage(ElementId id) {
   const Part& part = set_->parts[element.part];
   ElementPassage& passage = passages_[id];
   passage.stopped = part.triangle_coverage.empty() ? part.stopped : vec3(element.coverage);
-  if (part.triangle_stopped.empty()) return;
+  passage.transmittance = part.transmittance;
+  if (part.triangle_stopped.empty() && part.triangle_transmittance.empty()) return;
   if (element.kind == ElementKind::kPatch) {
-    passage.stopped = patch_paint(element.shape).stopped;
+    const Paint paint = patch_paint(element.shape);
+    passage.stopped = paint.stopped;
+    passage.transmittance = paint.transmittance;
     return;
   }
   const FaceClusterTree& tree = set_->tree(part);
@@ -184,16 +193,19 @@ void ElementPool::fill_passage(ElementId id) {
     first = tree.nodes[element.shape].first;
     count = tree.nodes[element.shape].count;
   }
-  vec3 stopped(0);
+  vec3 stopped(0), transmittance(0);
   float area = 0;
   for (uint32_t t = first; t < first + count; ++t) {
     const UVec3& c = tree.mesh.triangles[t];
     const float a =
         length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z]));
     area += a;
-    stopped += a * part.triangle_stopped[t];
+    if (!part.triangle_stopped.empty()) stopped += a * part.triangle_stopped[t];
+    if (!part.triangle_transmittance.empty()) transmittance += a * part.triangle_transmittance[t];
   }
-  if (area > 0) passage.stopped = stopped / area;
+  if (!(area > 0)) return;
+  if (!part.triangle_stopped.empty()) passage.stopped = stopped / area;
+  if (!part.triangle_transmittance.empty()) passage.transmittance = transmittance / area;
 }
 
 void ElementPool::fill_volume(ElementId id) {

@@ -42,8 +42,8 @@ bool contends_for_place(const SurfaceSet& set, uint32_t triangle) {
 
 bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other) {
   const PlacedTriangle a = placed(set, owner), b = placed(set, other);
-  const bool both_sides = material_of(set, a.part).double_sided,
-             other_both_sides = material_of(set, b.part).double_sided;
+  const bool both_sides = material_of(set, a.part).lit_behind(),
+             other_both_sides = material_of(set, b.part).lit_behind();
   const float own_light = a.exitance(), other_light = b.exitance();
   if (own_light < other_light) return false;
   if (own_light == other_light) {

@@ -10,7 +10,7 @@
 namespace goldthread {
 namespace {
 
-constexpr Paint kNoPaint{vec3(0), vec3(0), 0, vec3(0)};
+constexpr Paint kNoPaint{vec3(0), vec3(0), 0, vec3(0), vec3(0)};
 
 const Primitive& primitive_of(const Scene& scene, const Part& part) {
   return scene.meshes[scene.instances[part.instance].mesh].primitives[part.primitive];
@@ -74,6 +74,28 @@ vec3 through_glass(const Material& material, const vec4& colour, float metallic,
   return (1 - metallic) * transmission * glm::clamp(vec3(colour) * material.volume_tint, vec3(0), vec3(1));
 }
 
+// Mixes diffuse transmission in. What is neither metal nor glass, in `paint.reflectance` times its colour, is
+// taken here times another.
+void let_through(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights,
+                 float metallic, Paint& paint) {
+  const Material& material = scene.materials[primitive.material];
+  const float through = factor_at(scene, primitive, material.diffuse_transmission,
+                                  material.diffuse_transmission_texture, 3, source, weights);
+  vec3 colour = material.diffuse_transmission_colour;
+  const Texture& texture = material.diffuse_transmission_colour_texture;
+  if (texture.present())
+    colour *= vec3(sample_texture(texture, scene.images, texcoord_at(primitive, texture, source, weights)));
+  const float glass = transmission_at(scene, primitive, source, weights);
+  const float alpha = coverage_of(material, base_colour_at(scene, primitive, source, weights).w);
+  paint.reflectance *= 1 - through;
+  paint.transmittance = alpha * (1 - metallic) * (1 - glass) * through * glm::clamp(colour, vec3(0), vec3(1));
+  // Together no more than what light may lose nothing of.
+  const vec3 most = glm::max(paint.reflectance + paint.transmittance, vec3(kMaxReflectance * alpha));
+  const vec3 kept = alpha > 0 ? vec3(kMaxReflectance * alpha) / most : vec3(1);
+  paint.reflectance *= kept;
+  paint.transmittance *= kept;
+}
+
 Paint paint_of_source(const Scene& scene, const Primitive& primitive, uint32_t source, vec2 weights) {
   const Material& material = scene.materials[primitive.material];
   const vec4 colour = base_colour_at(scene, primitive, source, weights);
@@ -90,6 +112,7 @@ Paint paint_of_source(const Scene& scene, const Primitive& primitive, uint32_t s
     paint.coverage = luminance(paint.stopped);
     paint.reflectance *= 1 - transmission;
   }
+  if (material.is_translucent()) let_through(scene, primitive, source, weights, metallic, paint);
   vec3 emission = material.emission;
   if (material.emits() && material.emission_texture.present())
     emission *= vec3(sample_texture(material.emission_texture, scene.images,
@@ -103,6 +126,8 @@ bool varies(const Scene& scene, const Primitive& primitive) {
   return material.base_colour_texture.present() || !primitive.colours.empty() ||
          (material.metallic > 0 && material.metallic_texture.present()) ||
          (material.is_glass() && material.transmission_texture.present()) ||
+         (material.is_translucent() && (material.diffuse_transmission_texture.present() ||
+                                        material.diffuse_transmission_colour_texture.present())) ||
          (material.emits() && material.emission_texture.present());
 }
 
@@ -138,9 +163,11 @@ Paint average(uint32_t count, uint32_t seed, const PaintAt& paint) {
     sum.exitance += one.exitance;
     sum.coverage += one.coverage;
     sum.stopped += one.stopped;
+    sum.transmittance += one.transmittance;
   }
   const float share = 1.0f / static_cast<float>(count);
-  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share, sum.stopped * share};
+  return {sum.reflectance * share, sum.exitance * share, sum.coverage * share, sum.stopped * share,
+          sum.transmittance * share};
 }
 
 Paint average_paint(const SurfaceSet& set, const Part& part, uint32_t triangle) {
@@ -166,6 +193,7 @@ void paint_part(const SurfaceSet& set, Part& part) {
     part.exitance = paint.exitance;
     part.coverage = paint.coverage;
     part.stopped = paint.stopped;
+    part.transmittance = paint.transmittance;
     return;
   }
   const bool glass = scene.materials[part.material].is_glass();
@@ -176,14 +204,17 @@ void paint_part(const SurfaceSet& set, Part& part) {
   part.triangle_reflectance.resize(count);
   part.triangle_exitance.resize(count);
   part.triangle_coverage.resize(count);
+  const bool translucent = scene.materials[part.material].is_translucent();
   if (glass) part.triangle_stopped.resize(count);
-  glm::dvec3 reflectance(0), exitance(0), stopped(0);
+  if (translucent) part.triangle_transmittance.resize(count);
+  glm::dvec3 reflectance(0), exitance(0), stopped(0), transmittance(0);
   double coverage = 0, area = 0;
   for (size_t t = 0; t < count; ++t) {
     part.triangle_reflectance[t] = paints[t].reflectance;
     part.triangle_exitance[t] = paints[t].exitance;
     part.triangle_coverage[t] = paints[t].coverage;
     if (glass) part.triangle_stopped[t] = paints[t].stopped;
+    if (translucent) part.triangle_transmittance[t] = paints[t].transmittance;
     const UVec3& c = mesh.triangles[t];
     const double a = static_cast<double>(
         length(area_vector(mesh.positions[c.x], mesh.positions[c.y], mesh.positions[c.z])));
@@ -192,11 +223,13 @@ void paint_part(const SurfaceSet& set, Part& part) {
     exitance += a * dvec3(paints[t].exitance);
     coverage += a * static_cast<double>(paints[t].coverage);
     stopped += a * dvec3(paints[t].stopped);
+    transmittance += a * dvec3(paints[t].transmittance);
   }
   part.reflectance = vec3(reflectance / std::max(area, 1e-300));
   part.exitance = vec3(exitance / std::max(area, 1e-300));
   part.coverage = static_cast<float>(coverage / std::max(area, 1e-300));
   part.stopped = vec3(stopped / std::max(area, 1e-300));
+  part.transmittance = vec3(transmittance / std::max(area, 1e-300));
 }
 
 vec3 passing_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights) {

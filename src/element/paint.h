@@ -12,8 +12,9 @@ vec3 passing_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2
 /// What becomes of light at a point, as the element averages are made of.
 struct Paint {
   vec3 reflectance{0}, exitance{0};
-  float coverage = 1;  ///< share of light that stops there, of colours the luminance
-  vec3 stopped{1};     ///< the same by channel
+  float coverage = 1;     ///< share of light that stops there, of colours the luminance
+  vec3 stopped{1};        ///< the same by channel
+  vec3 transmittance{0};  ///< share of light that leaves diffusely on the other side
 };
 Paint paint_at(const SurfaceSet& set, const Part& part, uint32_t triangle, vec2 weights);
 

@@ -100,7 +100,7 @@ void list_surfaces(SurfaceSet& set) {
     if (material.unlit) continue;
     for (const ClusterRef root : tree.roots) {
       set.surfaces.push_back({p, root, false});
-      if (material.double_sided) set.surfaces.push_back({p, root, true});
+      if (material.lit_behind()) set.surfaces.push_back({p, root, true});
     }
   }
 }
@@ -127,7 +127,10 @@ SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel) {
     if (!cancel.cancelled()) paint_part(set, part);
   });
   list_surfaces(set);
-  for (const Part& part : set.parts) set.has_glass |= scene.materials[part.material].is_glass();
+  for (const Part& part : set.parts) {
+    set.has_glass |= scene.materials[part.material].is_glass();
+    set.has_translucent |= scene.materials[part.material].is_translucent();
+  }
   set.clamped_materials = count_clamped(scene);
   return set;
 }

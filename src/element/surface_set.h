@@ -20,16 +20,18 @@ struct Part {
   mat3 area_map{1};   ///< carries the tree's area vectors to world ones of the front side
   float scale = 1;    ///< of lengths
   float winding = 1;  ///< -1 when mirrored: then the front of a triangle is where its corners run clockwise
-  std::vector<vec3> positions;             ///< world, per vertex of the tree's mesh
-  uint32_t first_triangle = 0;             ///< the number of its triangle 0 among all of the world's
-  vec3 reflectance{0};                     ///< times coverage, clamped below 1
-  vec3 exitance{0};                        ///< lm/m^2, times coverage
-  float coverage = 1;                      ///< share of light that stops there (alpha, glass, overlaps)
-  vec3 stopped{1};                         ///< the same by channel
-  std::vector<vec3> triangle_reflectance;  ///< area averages per tree triangle; empty when uniform
-  std::vector<vec3> triangle_exitance;     ///< the same, empty when uniform
-  std::vector<float> triangle_coverage;    ///< the same, empty when uniform
-  std::vector<vec3> triangle_stopped;      ///< the same, empty when uniform and where there is no glass
+  std::vector<vec3> positions;               ///< world, per vertex of the tree's mesh
+  uint32_t first_triangle = 0;               ///< the number of its triangle 0 among all of the world's
+  vec3 reflectance{0};                       ///< times coverage, clamped below 1
+  vec3 exitance{0};                          ///< lm/m^2, times coverage
+  float coverage = 1;                        ///< share of light that stops there (alpha, glass, overlaps)
+  vec3 stopped{1};                           ///< the same by channel
+  vec3 transmittance{0};                     ///< share of light that leaves diffusely on the other side
+  std::vector<vec3> triangle_reflectance;    ///< area averages per tree triangle; empty when uniform
+  std::vector<vec3> triangle_exitance;       ///< the same, empty when uniform
+  std::vector<float> triangle_coverage;      ///< the same, empty when uniform
+  std::vector<vec3> triangle_stopped;        ///< the same, empty when uniform and where there is no glass
+  std::vector<vec3> triangle_transmittance;  ///< the same, empty when uniform and where none gets through
   /// The world's triangles that own places of this part's (settle_overlaps); triangle t's are covering
   /// [covering_first[t], covering_first[t + 1]). Both empty when there are none.
   std::vector<uint32_t> covering_first, covering;
@@ -54,6 +56,7 @@ struct SurfaceSet {
   SkippedTriangles skipped;        ///< over all instances
   uint32_t clamped_materials = 0;  ///< whose reflectance was cut to kMaxReflectance
   bool has_glass = false;          ///< some part lets light straight on in what is not a hole
+  bool has_translucent = false;    ///< some part lets light through to leave diffusely on the other side
   float same_place = 0;            ///< metres within which triangles of one plane lie in one place
   uint64_t overlapping = 0;        ///< pairs of triangles in one place, of which one owns it
 

@@ -122,12 +122,26 @@ void add_glass(Json& json, const Material& material, TextureTable& textures, Glt
   use_extension(document, "KHR_materials_volume");
 }
 
+void add_translucence(Json& json, const Material& material, TextureTable& textures, GltfDocument& document) {
+  if (!(material.diffuse_transmission > 0)) return;
+  const vec3 colour = glm::clamp(material.diffuse_transmission_colour, vec3(0), vec3(1));
+  Json through = {{"diffuseTransmissionFactor", shortest(share(material.diffuse_transmission))},
+                  {"diffuseTransmissionColorFactor", json_array({&colour.x, 3})}};
+  if (material.diffuse_transmission_texture.present())
+    through["diffuseTransmissionTexture"] = textures.info(material.diffuse_transmission_texture);
+  if (material.diffuse_transmission_colour_texture.present())
+    through["diffuseTransmissionColorTexture"] = textures.info(material.diffuse_transmission_colour_texture);
+  json["extensions"]["KHR_materials_diffuse_transmission"] = std::move(through);
+  use_extension(document, "KHR_materials_diffuse_transmission");
+}
+
 Json build_material(const Material& material, TextureTable& textures, GltfDocument& document) {
   Json json = Json::object();
   if (!material.name.empty()) json["name"] = material.name;
   json["pbrMetallicRoughness"] = surface_of(material, textures);
   add_emission(json, material, textures, document);
   add_glass(json, material, textures, document);
+  add_translucence(json, material, textures, document);
   if (material.alpha_mode == AlphaMode::kBlend) json["alphaMode"] = "BLEND";
   if (material.alpha_mode == AlphaMode::kMask) {
     json["alphaMode"] = "MASK";

@@ -56,6 +56,8 @@ class MaterialReader {
     read_reflectance(source, material, base, metallic);
     read_emission(source, material);
     const TextureUse transmission = read_transmission(source, material);
+    TextureUse through, through_colour;
+    read_diffuse_transmission(source, material, through, through_colour);
     read_volume(source, material);
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
@@ -68,6 +70,13 @@ class MaterialReader {
       if (Status status = place_texture(metallic, material.metallic_texture); !status) return status;
     if (material.transmission > 0)
       if (Status status = place_texture(transmission, material.transmission_texture); !status) return status;
+    if (material.diffuse_transmission > 0) {
+      if (Status status = place_texture(through, material.diffuse_transmission_texture); !status)
+        return status;
+      if (Status status = place_texture(through_colour, material.diffuse_transmission_colour_texture);
+          !status)
+        return status;
+    }
     if (material.emits())
       if (Status status = place_texture(emission, material.emission_texture); !status) return status;
     scene_.materials.push_back(std::move(material));
@@ -98,6 +107,18 @@ class MaterialReader {
     if (glass == nullptr) return {};
     material.transmission = share("transmissionFactor", number_member(*glass, "transmissionFactor", 0));
     return texture_use(object_member(*glass, "transmissionTexture"));
+  }
+
+  void read_diffuse_transmission(const tinygltf::Material& source, Material& material, TextureUse& share_use,
+                                 TextureUse& colour_use) {
+    const auto* through = find_extension(source.extensions, "KHR_materials_diffuse_transmission");
+    if (through == nullptr) return;
+    material.diffuse_transmission =
+        share("diffuseTransmissionFactor", number_member(*through, "diffuseTransmissionFactor", 0));
+    material.diffuse_transmission_colour = share(
+        "diffuseTransmissionColorFactor", vector_member(*through, "diffuseTransmissionColorFactor", vec3(1)));
+    share_use = texture_use(object_member(*through, "diffuseTransmissionTexture"));
+    colour_use = texture_use(object_member(*through, "diffuseTransmissionColorTexture"));
   }
 
   /// Beer's law over half the thickness, as a surface's own colour: light goes in by one surface and out by

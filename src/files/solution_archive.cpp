@@ -226,6 +226,10 @@ struct StoredPassage {
   float transmission = 0;
   Texture transmission_texture;
   vec3 volume_tint{1};
+  float diffuse_transmission = 0;
+  Texture diffuse_transmission_texture;
+  vec3 diffuse_transmission_colour{1};
+  Texture diffuse_transmission_colour_texture;
 };
 
 template <typename V, typename T>
@@ -243,7 +247,8 @@ void fields(A& a, V& v) {
 }
 template <typename A, Is<StoredPassage> V>
 void fields(A& a, V& v) {
-  a(v.transmission, v.transmission_texture, v.volume_tint);
+  a(v.transmission, v.transmission_texture, v.volume_tint, v.diffuse_transmission,
+    v.diffuse_transmission_texture, v.diffuse_transmission_colour, v.diffuse_transmission_colour_texture);
 }
 template <typename A, Is<Image> V>
 void fields(A& a, V& v) {
@@ -316,8 +321,10 @@ bool visit_passages(Packer& a, const std::vector<Material>& materials) {
   std::vector<StoredPassage> passages;
   bool any = false;
   for (const Material& m : materials) {
-    passages.push_back({m.transmission, m.transmission_texture, m.volume_tint});
-    any |= m.transmission > 0;
+    passages.push_back({m.transmission, m.transmission_texture, m.volume_tint, m.diffuse_transmission,
+                        m.diffuse_transmission_texture, m.diffuse_transmission_colour,
+                        m.diffuse_transmission_colour_texture});
+    any |= m.transmission > 0 || m.diffuse_transmission > 0;
   }
   if (any) a(passages);
   return true;
@@ -331,6 +338,10 @@ bool visit_passages(Unpacker& a, std::vector<Material>& materials) {
     materials[i].transmission = p.transmission;
     materials[i].transmission_texture = p.transmission_texture;
     materials[i].volume_tint = p.volume_tint;
+    materials[i].diffuse_transmission = p.diffuse_transmission;
+    materials[i].diffuse_transmission_texture = p.diffuse_transmission_texture;
+    materials[i].diffuse_transmission_colour = p.diffuse_transmission_colour;
+    materials[i].diffuse_transmission_colour_texture = p.diffuse_transmission_colour_texture;
   }
   return true;
 }

@@ -17,8 +17,10 @@ std::string check_texture(const Texture& texture, const Scene& scene) {
 }
 
 std::string check_material(const Material& material, const Scene& scene) {
-  for (const Texture* texture : {&material.base_colour_texture, &material.metallic_texture,
-                                 &material.emission_texture, &material.transmission_texture})
+  for (const Texture* texture :
+       {&material.base_colour_texture, &material.metallic_texture, &material.emission_texture,
+        &material.transmission_texture, &material.diffuse_transmission_texture,
+        &material.diffuse_transmission_colour_texture})
     if (std::string problem = check_texture(*texture, scene); !problem.empty()) return problem;
   return material.alpha_mode > AlphaMode::kBlend ? "an unknown alpha mode" : "";
 }

@@ -190,7 +190,7 @@ void AdaptiveGather::show_leaves() {
   errors_.resize(pool.size());
   cut_.resize(pool.size(), 0);
   const auto set = [&](ElementId id, const vec3& light) {
-    shown_.shown[id] = pool[id].exitance + pool[id].reflectance * light;
+    shown_.shown[id] = leaving_light(pool, id, light, solver_.state().irradiance);
     shown_.low[id] = shown_.high[id] = largest(shown_.shown[id]);
   };
   for (ElementId id = static_cast<ElementId>(before); id < pool.size(); ++id) {

@@ -49,7 +49,7 @@ AdaptiveGather::AdaptiveGather(HierarchicalSolver& solver, const ReconstructOpti
   for (uint32_t p = 0; p < set.parts.size(); ++p) {
     const Material& material = set.scene->materials[set.parts[p].material];
     if (!material.unlit && !set.tree(set.parts[p]).mesh.triangles.empty())
-      parts_[p].sides.resize(material.double_sided ? 2 : 1);
+      parts_[p].sides.resize(material.lit_behind() ? 2 : 1);
   }
 }
 
@@ -73,7 +73,8 @@ void AdaptiveGather::run() {
 ShownLight AdaptiveGather::shown_light() const {
   ShownLight shown = shown_;
   for (const PartLight& lit : parts_)
-    for (const Side& side : lit.sides) fit_leaves(solver_.pool(), lit.points, side.leaves, side.light, shown);
+    for (const Side& side : lit.sides)
+      fit_leaves(solver_.pool(), lit.points, side.leaves, side.light, solver_.state(), shown);
   range_over_leaves(solver_.pool(), shown);
   return shown;
 }

@@ -11,7 +11,7 @@ constexpr uint32_t kLooks = 32, kFew = 2;
 // Whether the side of a triangle that a ray meets neither reflects nor emits.
 bool is_black_back(const SurfaceSet& set, const Hit& hit, const vec3& direction) {
   const Part& part = part_of_triangle(set, hit.triangle);
-  return !set.scene->materials[part.material].double_sided && part.winding * dot(hit.normal, direction) > 0;
+  return !set.scene->materials[part.material].lit_behind() && part.winding * dot(hit.normal, direction) > 0;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class PlaneSum {
 }  // namespace
 
 void fit_leaves(const ElementPool& pool, const PartPoints& points, std::span<const ElementId> leaves,
-                std::span<const vec3> light, ShownLight& shown) {
+                std::span<const vec3> light, const RadiosityState& state, ShownLight& shown) {
   shown.rise.resize(pool.size(), mat3(0));
   std::vector<std::pair<ElementId, uint32_t>> faces;
   for (uint32_t f = 0; f < leaves.size(); ++f)
@@ -59,7 +59,7 @@ void fit_leaves(const ElementPool& pool, const PartPoints& points, std::span<con
     const vec3 u = normalize(std::abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y));
     const mat3 rise = sum.rise(u, cross(n, u));
     const vec3 centre = glm::max(vec3(0), sum.light() - rise * sum.place());
-    shown.shown[id] = leaf.exitance + leaf.reflectance * centre;
+    shown.shown[id] = leaving_light(pool, id, centre, state.irradiance);
     for (int column = 0; column < 3; ++column) shown.rise[id][column] = leaf.reflectance * rise[column];
   }
 }

@@ -71,7 +71,8 @@ ShownLight settle_outliers(const HierarchicalSolver& solver, const ReconstructOp
         for (uint32_t k = 0; k < kPoints; ++k)
           sum += gather_at(solver, solved, id, at[k].position, at[k].normal, gather, hash(id, 78 + k), count)
                      .irradiance;
-        light.shown[id] = pool[id].exitance + pool[id].reflectance * sum / static_cast<float>(kPoints);
+        light.shown[id] =
+            leaving_light(pool, id, sum / static_cast<float>(kPoints), solver.state().irradiance);
         light.low[id] = light.high[id] = largest(light.shown[id]);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);

@@ -52,7 +52,7 @@ Lighting average_lighting(const HierarchicalSolver& solver) {
     const PartPoints points = collect_light_points(pool, part);
     std::vector<uint32_t> point_of_vertex;
     LitPrimitive lit = build_output_mesh(pool, part, points, point_of_vertex);
-    for (int side = 0; side < (material.double_sided ? 2 : 1); ++side) {
+    for (int side = 0; side < (material.lit_behind() ? 2 : 1); ++side) {
       const std::vector<ElementId> leaves = pool.leaf_elements(part, side == 1);
       (side == 0 ? lit.irradiance : lit.irradiance_back) =
           to_vertices(average_side(solver, points, leaves, side == 1), point_of_vertex);

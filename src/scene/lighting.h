@@ -28,7 +28,7 @@ struct LitPrimitive {
 
   std::vector<vec3> irradiance;  ///< lux, per vertex, arriving on the front
   std::vector<vec3>
-      irradiance_back;  ///< lux, per vertex, on the back; empty unless the material is double-sided
+      irradiance_back;  ///< lux, per vertex, on the back; empty unless the material is lit behind
 };
 
 struct Lighting {

@@ -15,9 +15,9 @@ enum class AlphaMode : uint8_t { kOpaque, kMask, kBlend };
 
 /// A glTF metallic-roughness material reduced to its diffuse light. Reflectance is base colour * (1 -
 /// metallic) * (1 - transmission) (glTF 2.0 appendix B, KHR_materials_transmission); exitance is pi *
-/// emission. Nothing is taken off for Fresnel's mirror, 4% of what comes straight at a dielectric and on the
-/// whole 9% of diffuse light: that light stays in the room, and where there are no mirrors it is the
-/// diffuse surface that has to carry it.
+/// emission, on the back only where it is double-sided. Nothing is taken off for Fresnel's mirror, 4% of what
+/// comes straight at a dielectric and on the whole 9% of diffuse light: that light stays in the room, and
+/// where there are no mirrors it is the diffuse surface that has to carry it.
 struct Material {
   std::string name;
   vec3 base_colour{1};          ///< linear, factor only
@@ -39,8 +39,18 @@ struct Material {
   /// its way in and another on its way out; 1 where there is no thickness.
   vec3 volume_tint{1};
 
+  /// KHR_materials_diffuse_transmission: share of what is neither metal nor glass that lets light through to
+  /// leave diffusely on the other side, in a colour of its own; factors only.
+  float diffuse_transmission = 0;
+  Texture diffuse_transmission_texture;  ///< alpha channel
+  vec3 diffuse_transmission_colour{1};
+  Texture diffuse_transmission_colour_texture;
+
   bool emits() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
   bool is_glass() const { return transmission > 0 && metallic < 1 && !unlit; }
+  bool is_translucent() const { return diffuse_transmission > 0 && metallic < 1 && !unlit; }
+  /// Whether light on its back counts: what is translucent brings it to the front.
+  bool lit_behind() const { return double_sided || is_translucent(); }
   /// Whether its colour, but for that of vertices, may be other than grey.
   bool is_coloured() const {
     const vec3 colour = base_colour * volume_tint;

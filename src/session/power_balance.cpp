@@ -70,7 +70,7 @@ struct Counter {
   bool takes(uint32_t triangle, const vec3& normal, const vec3& direction) const {
     const Part& part = part_of_triangle(pool().surfaces(), triangle);
     const Material& material = pool().surfaces().scene->materials[part.material];
-    return !material.unlit && (material.double_sided || part.winding * dot(normal, direction) < 0);
+    return !material.unlit && (material.lit_behind() || part.winding * dot(normal, direction) < 0);
   }
 
   // Whether light lands where a ray hits: on that triangle, or on one in the same place. Plates without
@@ -240,7 +240,8 @@ PowerBalance measure_power(const HierarchicalSolver& solver, uint32_t rays, uint
   const Leaves by_power = collect(pool, [&](ElementId id, const Element& e) {
     landing += glass ? area(e) * static_cast<double>(luminance(pool.stopped(id) * state.irradiance[id]))
                      : area(e) * static_cast<double>(e.coverage * luminance(state.irradiance[id]));
-    reflected += area(e) * static_cast<double>(luminance(e.reflectance * state.irradiance[id]));
+    reflected += area(e) * static_cast<double>(
+                               luminance((e.reflectance + pool.transmittance(id)) * state.irradiance[id]));
     own += area(e) * static_cast<double>(luminance(e.exitance));
     return area(e) * static_cast<double>(luminance(state.radiosity[id]));
   });

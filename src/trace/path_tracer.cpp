@@ -88,7 +88,8 @@ class Bundle {
   void collect(std::span<vec3> sums);
   void send_on(uint32_t& pair);
   void bounce(bool sure, std::span<vec3> sums);
-  bool arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) const;
+  bool arrive(const Ray& ray, const Meeting& met, double side, Path& path, vec3& sum) const;
+  void choose_side(const Meeting& met, double side, Path& path) const;
   vec3 emission_found(const Path& path, const Ray& ray, const Meeting& met) const;
 
   const TracedScene& scene_;
@@ -96,7 +97,7 @@ class Bundle {
   PathCost& count_;
   Few<Path, kBundle> paths_;
   Few<PathSeed, kBundle> seeds_;  ///< of paths_
-  Few<SobolPoint, kBundle> choices_, points_;
+  Few<SobolPoint, kBundle> choices_, points_, sides_;
   Few<Ray, kBundle> rays_;
   Few<Hit, kBundle> hits_;
   Few<Meeting, kBundle> meetings_;
@@ -136,6 +137,7 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
     if (lights_.has_lamps()) ask_lamps(pair);
     collect(sums);
     send_on(pair);
+    if (scene_.has_translucent()) draw(pair, sides_);
     bounce(sure, sums);
   }
 }
@@ -206,7 +208,8 @@ void Bundle::bounce(bool sure, std::span<vec3> sums) {
   size_t kept = 0;
   for (size_t i = 0; i < paths_.size(); ++i) {
     Path path = paths_[i];
-    if (!arrive(rays_[i], meetings_[i], path, sums[path.slot])) continue;
+    const double side = scene_.has_translucent() ? unit_double(sides_[i].u) : 0;
+    if (!arrive(rays_[i], meetings_[i], side, path, sums[path.slot])) continue;
     if (!sure) {
       const float survival = std::clamp(largest(path.throughput), kLeastSurvival, kMostSurvival);
       if (unit_double(choices_[i].v) >= static_cast<double>(survival)) continue;
@@ -237,7 +240,7 @@ float density_ratio(const Path& path, const Ray& ray, const Meeting& met, float 
 
 /// The other half of direct light: what bounces find by themselves, weighed against sample_emitter.
 vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met) const {
-  const vec3 nits = scene_.emission(met.triangle, met.weights);
+  const vec3 nits = scene_.emission(met);
   if (!(largest(nits) > 0)) return vec3(0);
   const vec3 d = ray.origin + met.distance * ray.direction - path.point;
   const float distance = length(d);
@@ -246,8 +249,25 @@ vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met
   return kPi * power_heuristic(cosine / kPi, density) * nits;
 }
 
+/// Diffuse light goes on to either side of what is translucent: to which, `side` (0..1) says.
+void Bundle::choose_side(const Meeting& met, double side, Path& path) const {
+  const vec3 back = scene_.reflectance(met.triangle, met.weights);
+  const vec3 through = scene_.translucence(met.triangle, met.weights);
+  if (through == vec3(0)) {
+    path.throughput *= back;
+    return;
+  }
+  const float likely = largest(through) / (largest(back) + largest(through));
+  if (side < static_cast<double>(likely)) {
+    path.throughput *= through / likely;
+    path.normal = -met.normal;
+  } else {
+    path.throughput *= back / (1 - likely);
+  }
+}
+
 /// Moves the path to where its ray has ended; false when it ends there, too.
-bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) const {
+bool Bundle::arrive(const Ray& ray, const Meeting& met, double side, Path& path, vec3& sum) const {
   path.throughput *= met.tint;
   if (met.missed()) {
     const float cosine = std::max(0.0f, dot(path.normal, ray.direction));
@@ -262,9 +282,9 @@ bool Bundle::arrive(const Ray& ray, const Meeting& met, Path& path, vec3& sum) c
   if (!(share > 0)) return false;
   path.throughput *= share;
   sum += path.throughput * emission_found(path, ray, met);
-  path.throughput *= scene_.reflectance(met.triangle, met.weights);
   path.point = ray.origin + met.distance * ray.direction;
   path.normal = met.normal;
+  choose_side(met, side, path);
   path.origin = path.point + scene_.epsilon() * path.normal;
   return largest(path.throughput) > 0;
 }
@@ -315,13 +335,16 @@ void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits
     } else if (scene_.material(met.triangle).unlit) {
       nits[i] = scene_.unlit_colour(met.triangle, met.weights);
     } else {
-      nits[i] = scene_.emission(met.triangle, met.weights);
-      const vec3 share = scene_.reflectance(met.triangle, met.weights) / kPi;
-      if (!(largest(share) > 0)) continue;
+      nits[i] = scene_.emission(met);
       const vec3 point = ray.origin + met.distance * ray.direction;
-      starts.push_back({point + scene_.epsilon() * met.normal, met.normal, seen[i].seed});
-      reflectance.push_back(share);
-      pixels.push_back(i);
+      const auto start = [&](const vec3& normal, const vec3& share) {
+        if (!(largest(share) > 0)) return;
+        starts.push_back({point + scene_.epsilon() * normal, normal, seen[i].seed});
+        reflectance.push_back(share / kPi);
+        pixels.push_back(i);
+      };
+      start(met.normal, scene_.reflectance(met.triangle, met.weights));
+      start(-met.normal, scene_.translucence(met.triangle, met.weights));
     }
   }
   count.path_nanoseconds += nanoseconds_since(begin);

@@ -64,7 +64,7 @@ Sides receiving_sides(const TracedScene& scene) {
   for (uint32_t t = 0; t < scene.triangles().size(); ++t) {
     const Material& m = scene.material(t);
     if (m.unlit) continue;
-    sum += static_cast<double>(scene.area(t)) * (m.double_sided ? 2 : 1);
+    sum += static_cast<double>(scene.area(t)) * (m.lit_behind() ? 2 : 1);
     sides.triangles.push_back(t);
     sides.up_to.push_back(sum);
   }
@@ -84,7 +84,7 @@ Receiver random_receiver(const TracedScene& scene, const Sides& sides, uint32_t 
     const auto share = static_cast<float>(unit_double(hash(draw, 3)));
     const vec2 weights(root * (1 - share), root * share);
     r.point = scene.point(t, weights);
-    const bool back = scene.material(t).double_sided && hash(draw, 4) % 2 == 1;
+    const bool back = scene.material(t).lit_behind() && hash(draw, 4) % 2 == 1;
     r.normal = back ? -scene.triangles()[t].normal : scene.triangles()[t].normal;
     r.origin = r.point + scene.epsilon() * r.normal;
     r.triangle = t;
@@ -128,7 +128,7 @@ void add_vertices(const TracedScene& scene, const TracedPart& part, std::vector<
     vec3 normal = normalize_or(faces[v].normal, front);
     if (!part.source->normals.empty()) normal = normalize_or(normal_map * part.source->normals[v], normal);
     for (const bool back : {false, true}) {
-      if (back && !part.material->double_sided) continue;
+      if (back && !part.material->lit_behind()) continue;
       Receiver r;
       r.point = vec3(transform * vec4(part.source->positions[v], 1));
       r.normal = back ? -normal : normal;
@@ -210,7 +210,7 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
       const vec3 q(nearest_on_triangle(dvec3(point), dvec3(scene.corner(t, 0)), dvec3(scene.corner(t, 1)),
                                        dvec3(scene.corner(t, 2))));
       const float distance = length(q - point), facing = dot(scene.triangles()[t].normal, unit_normal);
-      const bool fits = facing > 0 || scene.material(t).double_sided;
+      const bool fits = facing > 0 || scene.material(t).lit_behind();
       const float claim = distance + tolerance * (fits ? 1 - std::abs(facing) : 2.0f);
       if (distance > radius || claim >= best) return;
       best = claim;

@@ -169,10 +169,20 @@ Appearance ShownScene::appearance(const Hit& hit, const Ray& ray) const {
                  glm::clamp(vec3(colour) * material.volume_tint, vec3(0), vec3(1));
   if (!surface.lit) return seen;
   const bool back = seen_from_back(hit.triangle, ray);
-  const bool dark = back && !surface.lit_back;
-  const vec3 irradiance =
-      dark ? vec3(0) : interpolate(back ? irradiance_back_ : irradiance_, hit.triangle, hit.weights);
-  seen.nits += vec3(colour) * (1 - metallic) * (1 - transmission) * irradiance / kPi;
+  const auto light = [&](bool behind) {
+    if (behind && !surface.lit_back) return vec3(0);
+    return interpolate(behind ? irradiance_back_ : irradiance_, hit.triangle, hit.weights);
+  };
+  const vec3 irradiance = light(back);
+  const float share = (1 - metallic) * (1 - transmission) / kPi;
+  if (!material.is_translucent()) {
+    seen.nits += share * vec3(colour) * irradiance;
+    return seen;
+  }
+  const Texture& texture = material.diffuse_transmission_colour_texture;
+  const float through = factor(material.diffuse_transmission, material.diffuse_transmission_texture, 3);
+  const vec3 other = material.diffuse_transmission_colour * vec3(look_up(texture));
+  seen.nits += share * ((1 - through) * vec3(colour) * irradiance + through * other * light(!back));
   return seen;
 }
 

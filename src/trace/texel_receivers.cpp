@@ -86,7 +86,7 @@ TexelReceivers texel_receivers(const TracedScene& scene, const TexelLayout& layo
     out.problems.without_uv_area += raster.without_area;
     const std::vector<Receiver> fronts = fronts_of(scene, part, raster);
     out.problems.without_texel += fronts.empty();
-    const size_t sides = part.material->double_sided ? 2 : 1;
+    const size_t sides = part.material->lit_behind() ? 2 : 1;
     if (out.receivers.size() + sides * fronts.size() > kMostTexelReceivers) {
       out.receivers.clear();
       out.too_many = true;

@@ -20,7 +20,8 @@ vec3 unit_normal(const vec3& a, const vec3& b, const vec3& c) {
 bool is_even(const TracedPart& part) {
   const Material& m = *part.material;
   return part.source->colours.empty() && !m.base_colour_texture.present() && !m.metallic_texture.present() &&
-         !m.emission_texture.present() && !m.transmission_texture.present();
+         !m.emission_texture.present() && !m.transmission_texture.present() &&
+         !m.diffuse_transmission_texture.present() && !m.diffuse_transmission_colour_texture.present();
 }
 
 uint8_t set_of(const Texture& texture) {
@@ -28,8 +29,13 @@ uint8_t set_of(const Texture& texture) {
 }
 
 /// All textures that say what a point does with light.
-std::array<const Texture*, 4> textures_of(const Material& m) {
-  return {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture, &m.transmission_texture};
+std::array<const Texture*, 6> textures_of(const Material& m) {
+  return {&m.base_colour_texture,
+          &m.metallic_texture,
+          &m.emission_texture,
+          &m.transmission_texture,
+          &m.diffuse_transmission_texture,
+          &m.diffuse_transmission_colour_texture};
 }
 
 /// Those texture coordinates that the material's textures use and the primitive has.
@@ -82,6 +88,12 @@ void add_material(Fingerprint& print, const Material& m) {
     print.add(m.transmission);
     print.add(m.volume_tint);
     add_texture(print, m.transmission_texture);
+  }
+  if (m.is_translucent()) {
+    print.add(m.diffuse_transmission);
+    print.add(m.diffuse_transmission_colour);
+    add_texture(print, m.diffuse_transmission_texture);
+    add_texture(print, m.diffuse_transmission_colour_texture);
   }
   for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
     add_texture(print, *t);
@@ -169,18 +181,20 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
     triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t});
   }
   part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
+  has_translucent_ |= part.triangle_count > 0 && part.material->is_translucent();
   const bool even = part.triangle_count > 0 && is_even(part);
   parts_.push_back(std::move(part));
   TracedPart& added = parts_.back();
   if (!even) return;
   added.reflectance = reflectance(added.first_triangle, vec2(0));
   added.emission = emission(added.first_triangle, vec2(0));
+  added.translucence = translucence(added.first_triangle, vec2(0));
   added.even = true;
 }
 
 bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
   const Material& m = material(triangle);
-  return !m.unlit && (m.double_sided || dot(triangles_[triangle].normal, direction) < 0);
+  return !m.unlit && (m.lit_behind() || dot(triangles_[triangle].normal, direction) < 0);
 }
 
 Meeting TracedScene::closest(const Ray& ray) const {
@@ -200,7 +214,7 @@ void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.distance = hit.distance;
   met.weights = hit.weights;
   met.normal = from_front ? triangle.normal : -triangle.normal;
-  met.live = !m.unlit && (from_front || m.double_sided);
+  met.live = !m.unlit && (from_front || m.lit_behind());
   if (!met.live && !m.unlit) look_for_front(ray, met);
 }
 
@@ -255,17 +269,35 @@ vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {
   return colour;
 }
 
-vec3 TracedScene::reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+TracedScene::Diffuse TracedScene::diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
   const Material& m = *part.material;
-  if (m.unlit) return vec3(0);
+  if (m.unlit) return {};
   const float metallic = factor(m.metallic, m.metallic_texture, 2, triangle, weights);
-  if (metallic == 1) return vec3(0);
-  const vec3 diffuse =
+  if (metallic == 1) return {};
+  Diffuse diffuse;
+  diffuse.back =
       glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
+  if (m.is_translucent()) {
+    const float share = factor(m.diffuse_transmission, m.diffuse_transmission_texture, 3, triangle, weights);
+    const Texture& texture = m.diffuse_transmission_colour_texture;
+    vec3 colour = m.diffuse_transmission_colour;
+    if (texture.present())
+      colour *= vec3(sample_texture(texture, scene_.images, texcoord(texture, triangle, weights)));
+    diffuse.through = share * (1 - metallic) * glm::clamp(colour, vec3(0), vec3(1));
+    diffuse.back *= 1 - share;
+    // The two together may not be more than the one is otherwise.
+    for (int c = 0; c < 3; ++c) {
+      const float sum = diffuse.back[c] + diffuse.through[c];
+      if (sum <= kMaxReflectance) continue;
+      diffuse.back[c] *= kMaxReflectance / sum;
+      diffuse.through[c] *= kMaxReflectance / sum;
+    }
+  }
   if (!m.is_glass()) return diffuse;
   const float all = coverage(triangle, weights), surface = alpha_coverage(triangle, weights);
   const float transmission = factor(m.transmission, m.transmission_texture, 0, triangle, weights);
-  return all > 0 ? diffuse * (surface * (1 - transmission) / all) : vec3(0);
+  const float kept = all > 0 ? surface * (1 - transmission) / all : 0.0f;
+  return {diffuse.back * kept, diffuse.through * kept};
 }
 
 /// A factor times one channel of its texture.

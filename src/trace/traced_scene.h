@@ -22,9 +22,10 @@ struct TracedPart {
   uint32_t first_triangle = 0, triangle_count = 0;
   /// By set, of each triangle, side by side; empty where no texture asks for them.
   std::array<std::vector<CornerTexcoords>, 2> texcoords;
-  bool even = false;    ///< no texture and no vertex colour: the next two hold all over
-  vec3 reflectance{0};  ///< as TracedScene::reflectance
-  vec3 emission{0};     ///< as TracedScene::emission
+  bool even = false;     ///< no texture and no vertex colour: the next two hold all over
+  vec3 reflectance{0};   ///< as TracedScene::reflectance
+  vec3 emission{0};      ///< as TracedScene::emission
+  vec3 translucence{0};  ///< as TracedScene::translucence
 };
 
 /// One triangle of the world.
@@ -69,13 +70,28 @@ class TracedScene {
   /// coverage; of glass it is the diffuse share of all light over coverage.
   vec3 reflectance(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
-    return part.even ? part.reflectance : reflectance_at(part, triangle, weights);
+    return part.even ? part.reflectance : diffuse_at(part, triangle, weights).back;
   }
   /// Emitted luminance, nits, over coverage just so; 0 where the material is unlit.
   vec3 emission(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
     return part.even ? part.emission : emission_at(part, triangle, weights);
   }
+  /// The same of what is met: nothing from the back of what is translucent and yet one-sided.
+  vec3 emission(const Meeting& met) const {
+    const TracedPart& part = parts_[triangles_[met.triangle].part];
+    const bool dark = part.material->is_translucent() && !part.material->double_sided &&
+                      dot(met.normal, triangles_[met.triangle].normal) < 0;
+    return dark ? vec3(0) : emission(met.triangle, met.weights);
+  }
+  /// Share of the light that is stopped at a point which leaves diffusely on the other side.
+  vec3 translucence(uint32_t triangle, vec2 weights) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    if (!part.material->is_translucent()) return vec3(0);
+    return part.even ? part.translucence : diffuse_at(part, triangle, weights).through;
+  }
+  /// Whether anything is translucent.
+  bool has_translucent() const { return has_translucent_; }
   /// Asks memory for what `meeting` reads of a triangle, and does not wait for it.
   void prefetch(const Hit& hit) const {
     if (!hit.missed()) __builtin_prefetch(&triangles_[hit.triangle]);
@@ -112,7 +128,12 @@ class TracedScene {
 
  private:
   void add(uint32_t instance, uint32_t primitive);
-  vec3 reflectance_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  /// Diffuse light on either side of a point, as shares of what is stopped there.
+  struct Diffuse {
+    vec3 back{0};     ///< to where it came from
+    vec3 through{0};  ///< to the other side
+  };
+  Diffuse diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   void prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
@@ -133,6 +154,7 @@ class TracedScene {
   std::vector<UVec3> corners_;   ///< per triangle, into positions_
   std::unique_ptr<RayCaster> caster_;
   float epsilon_ = 0;
+  bool has_translucent_ = false;
 };
 
 }  // namespace goldthread

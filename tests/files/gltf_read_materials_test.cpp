@@ -85,6 +85,23 @@ TEST(GltfMaterials, VolumesTakeHalfTheirLightAtEachSurface) {
   EXPECT_EQ(read_built(with_material(material)).materials[0].volume_tint, vec3(1));
 }
 
+TEST(GltfMaterials, DiffuseTransmissionHasAColourOfItsOwn) {
+  const json extension = {{"diffuseTransmissionFactor", 0.25},
+                          {"diffuseTransmissionTexture", {{"index", 0}}},
+                          {"diffuseTransmissionColorFactor", {0.5, 2, -1}},
+                          {"diffuseTransmissionColorTexture", {{"index", 0}, {"texCoord", 1}}}};
+  const Scene scene =
+      read_built(with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                                {"extensions", {{"KHR_materials_diffuse_transmission", extension}}}}));
+  const Material& m = scene.materials[0];
+  EXPECT_TRUE(m.is_translucent() && m.lit_behind() && !m.double_sided);
+  EXPECT_EQ(m.diffuse_transmission, 0.25f);
+  EXPECT_EQ(m.diffuse_transmission_texture.image, 0);
+  EXPECT_EQ(m.diffuse_transmission_colour, vec3(0.5f, 1, 0));
+  EXPECT_EQ(m.diffuse_transmission_colour_texture.texcoord, 1);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("diffuseTransmissionColorFactor is not within 0 to 1")));
+}
+
 TEST(GltfMaterials, FactorsAndFlags) {
   const Material m =
       read_built(with_material({{"name", "paint"},

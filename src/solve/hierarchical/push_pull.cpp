@@ -24,7 +24,10 @@ void RadiosityState::grow_to(const ElementPool& pool) {
       vector[i] = vector[e.parent];
       ambient[i] = ambient[e.parent];
     }
-    radiosity[i] = e.exitance + e.reflectance * irradiance[i];
+  }
+  for (size_t i = before; i < count; ++i) {
+    const Element& e = pool[static_cast<ElementId>(i)];
+    radiosity[i] = leaving_light(pool, static_cast<ElementId>(i), irradiance[i], irradiance);
     shown[i] = radiosity[i];
     openness[i] = e.area;
     const float uneven = pool.unevenness(static_cast<ElementId>(i));
@@ -119,6 +122,7 @@ struct Sweep {
   RadiosityState& state;
   float most_seen;               // what the form factors of a leaf may add up to
   const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
+  const std::vector<vec3>& old_irradiance;  // the same, for what is behind; empty where nothing comes through
   const Regard& regard;
 
   // Returns by how much the reflected power of all leaves below `id` has changed, lm.
@@ -210,9 +214,10 @@ struct Sweep {
     // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let
     // light grow.
     const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(share, 1e-20f));
-    const vec3 change = regard.of(e) * e.area * e.reflectance * glm::abs(irradiance - state.irradiance[id]);
+    const vec3 change = regard.of(e) * e.area * (e.reflectance + pool.transmittance(id)) *
+                        glm::abs(irradiance - state.irradiance[id]);
     state.irradiance[id] = irradiance;
-    state.radiosity[id] = e.exitance + e.reflectance * irradiance;
+    state.radiosity[id] = leaving_light(pool, id, irradiance, old_irradiance);
     state.shown[id] = state.radiosity[id];
     state.openness[id] = e.area * (faced > 0 ? std::clamp(seen / faced, kLeastOpenness, 1.0f) : 1.0f);
     state.low[id] = state.high[id] = largest(state.radiosity[id]);
@@ -244,7 +249,9 @@ double gather_push_pull(const ElementPool& pool, const LinkPool& links, Radiosit
                         float most_seen, const Regard& regard) {
   if (pool.root() == kNoElement) return 0;
   const std::vector<vec3> old = state.shown;
-  const Sweep sweep{pool, links, state, most_seen, old, regard};
+  std::vector<vec3> old_irradiance;
+  if (pool.surfaces().has_translucent) old_irradiance = state.irradiance;
+  const Sweep sweep{pool, links, state, most_seen, old, old_irradiance, regard};
   const float change = sweep.visit(pool.root(), Octants{});
   const vec3 all = regarded_power(pool, state, regard);
   return static_cast<double>(change) / std::max(1e-30, static_cast<double>(largest(all)));

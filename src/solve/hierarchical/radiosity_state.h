@@ -1,6 +1,7 @@
 // What the solver knows about every element: light that arrives and leaves.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "element/element_pool.h"
@@ -24,6 +25,18 @@ struct RadiosityState {
 
   void grow_to(const ElementPool& pool);
 };
+
+/// What leaves a surface element on which `irradiance` falls, lm/m^2: its own light, what it reflects, and
+/// what comes through from the other side. `all` are the irradiances of elements, as many as are known: what
+/// lies behind is the same piece of the other side, or where that is coarser what holds it.
+inline vec3 leaving_light(const ElementPool& pool, ElementId id, const vec3& irradiance,
+                          std::span<const vec3> all) {
+  const vec3 b = pool[id].exitance + pool[id].reflectance * irradiance;
+  const vec3 through = pool.transmittance(id);
+  if (through == vec3(0)) return b;
+  const ElementId behind = pool.behind(id, all.size());
+  return behind == kNoElement ? b : b + through * all[behind];
+}
 
 /// The channel that counts in error estimates.
 inline float largest(const vec3& c) {

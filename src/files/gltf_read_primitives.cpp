@@ -38,7 +38,7 @@ class PrimitiveReader {
           &PrimitiveReader::read_colours, &PrimitiveReader::apply_morph_targets, &PrimitiveReader::apply_skin,
           &PrimitiveReader::assign_material})
       if (Status status = (this->*step)(out); !status) return status.error();
-    for (vec3& normal : out.normals) normal = normalize_or(normal, normal);
+    settle_normals(out.normals);
     return true;
   }
 
@@ -53,6 +53,18 @@ class PrimitiveReader {
   bool skip(const std::string& message) {
     warn(message);
     return false;
+  }
+
+  /// Makes normals unit vectors. What has no direction becomes 0, which those who interpolate take as the
+  /// face's own normal: what is no number would spread to its neighbours.
+  void settle_normals(std::vector<vec3>& normals) {
+    size_t none = 0;
+    for (vec3& normal : normals) {
+      normal = is_finite(normal) ? normalize_or(normal, vec3(0)) : vec3(0);
+      if (normal == vec3(0)) ++none;
+    }
+    if (none > 0) warn(fmt::format("{} of {} normals have no direction; flat there", none, normals.size()));
+    if (none == normals.size()) normals.clear();
   }
 
   /// Whether an attribute has an element for each vertex. Those that do not are left out: positions are

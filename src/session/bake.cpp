@@ -18,6 +18,7 @@
 #include "files/solution_file.h"
 #include "math/tone_map.h"
 #include "reconstruct/place_gather.h"
+#include "session/buried_lamps.h"
 #include "session/effort.h"
 #include "session/light_setup.h"
 #include "session/reference_points.h"
@@ -207,6 +208,9 @@ Status Bake::build_hierarchies(const CancelToken& stop) {
     caster_ =
         std::make_unique<RayCaster>(world.positions, world.triangles, world.see_through, std::move(passing));
     report_.seconds.ray_bvh = since(bvh);
+    for (const std::string& warning : describe_buried_lamps(
+             scene_, [this](const Ray& ray) { return ends_on_back(surfaces_, *caster_, ray); }))
+      report_.warnings.push_back(warning);
     const PlaceClaims claims{
         [this](uint32_t t) { return contends_for_place(surfaces_, t); },
         [this](uint32_t first, uint32_t second) { return owns_place(surfaces_, first, second); }};

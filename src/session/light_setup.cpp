@@ -52,6 +52,14 @@ Passing transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces
   return passing_at(surfaces, part, triangle - part.first_triangle, weights);
 }
 
+bool ends_on_back(const SurfaceSet& surfaces, const RayCaster& caster, const Ray& ray) {
+  const Hit hit = caster.closest(ray);
+  if (hit.missed()) return false;
+  const Part& part = part_of_triangle(surfaces, hit.triangle);
+  return !surfaces.scene->materials[part.material].double_sided &&
+         part.winding * dot(hit.normal, ray.direction) > 0;
+}
+
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) {
   if (asked > 0) return asked;
   double sum = 0, count = 0;

@@ -26,6 +26,9 @@ std::string describe_overlaps(const SurfaceSet& surfaces);
 /// what its alpha leaves where it is blended, what is left in its colour where it is glass.
 Passing transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces);
 
+/// Whether a ray ends on the side of a one-sided surface that neither reflects nor emits.
+bool ends_on_back(const SurfaceSet& surfaces, const RayCaster& caster, const Ray& ray);
+
 /// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
 /// grey.
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);

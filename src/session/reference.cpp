@@ -14,6 +14,7 @@
 #include "files/scene_read.h"
 #include "math/colour.h"
 #include "math/tone_map.h"
+#include "session/buried_lamps.h"
 #include "session/light_map.h"
 #include "session/light_setup.h"
 #include "session/profile_facts.h"
@@ -114,6 +115,11 @@ Status Run::load() {
   if (traced_->triangles().empty())
     return Error{
         ErrorCode::kNothingToBake, "has no triangles", options_.input, {}, "give a file with a mesh in it"};
+  for (const std::string& warning : describe_buried_lamps(scene_, [this](const Ray& ray) {
+         const Meeting met = traced_->closest(ray);
+         return !met.missed() && !met.live;
+       }))
+    result_.warnings.push_back(warning);
   tracer_ = std::make_unique<PathTracer>(*traced_);
   if (!shines(scene_, *tracer_))
     return Error{ErrorCode::kNothingToBake,

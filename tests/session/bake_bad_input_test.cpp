@@ -1,6 +1,10 @@
 // Everything that can be wrong with a bake's input and output ends in one line and leaves nothing behind.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
+#include "goldthread/reference.h"
 #include "session/baked.h"
 
 namespace goldthread {
@@ -108,6 +112,67 @@ TEST(BakeBadInput, SomeBadTrianglesAreSkippedAndCountedOnce) {
   EXPECT_EQ(not_finite, 1);
   const WrittenGltf lit(result.written.at(0));
   EXPECT_TRUE(lit.primitive(0)["attributes"].contains("_IRRADIANCE"));
+}
+
+TEST(BakeBadInput, NormalsWithoutDirectionAreFlatAndNamed) {
+  const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
+  const TempFolder folder;
+  const auto light_with = [&](const std::vector<float>& normals, int& named) {
+    GltfBuilder b = lit_floor();
+    if (!normals.empty()) b.doc["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vec3s(normals);
+    const BakeResult result = baked(draft(folder.write("scene.gltf", b.text()), {folder.path("lit.glb")}));
+    named = 0;
+    for (const std::string& warning : result.warnings)
+      named += warning.find("of 4 normals have no direction") != std::string::npos;
+    return WrittenGltf(result.written.at(0)).attribute("_IRRADIANCE");
+  };
+  int named = 0;
+  const std::vector<float> flat = light_with({}, named);
+  EXPECT_EQ(named, 0);
+  for (const std::vector<float>& normals :
+       {std::vector<float>(12, 0.0f), std::vector<float>(12, nan),
+        std::vector<float>{0, 1, 0, nan, 0, 0, 0, 0, 0, 0, infinite, 0}}) {
+    EXPECT_EQ(light_with(normals, named), flat);
+    EXPECT_EQ(named, 1);
+  }
+}
+
+/// A one-sided box above the middle of the floor, from 0.1 to 1 m, and a lamp at a height.
+GltfBuilder box_with_lamp(double height) {
+  GltfBuilder b = lit_floor();
+  const float s = 0.5f;
+  const int positions = b.vec3s({-s, 0.1f, -s, s, 0.1f, -s, s, 0.1f, s, -s, 0.1f, s,  //
+                                 -s, 1,    -s, s, 1,    -s, s, 1,    s, -s, 1,    s});
+  const int indices = b.indices({0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 0, 4, 5, 0, 5, 1,
+                                 1, 5, 6, 1, 6, 2, 2, 6, 7, 2, 7, 3, 3, 7, 4, 3, 4, 0});
+  b.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}});
+  b.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+  b.doc["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"name", "lost"}}};
+  b.push("nodes",
+         {{"translation", {0, height, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  return b;
+}
+
+TEST(BakeBadInput, LampsInsideSolidsAreNamed) {
+  const TempFolder folder;
+  const auto named = [](const std::vector<std::string>& warnings) {
+    int count = 0;
+    for (const std::string& warning : warnings)
+      count += warning.find("\"lost\" is inside a closed solid") != std::string::npos;
+    return count;
+  };
+  for (const double height : {0.5, 1.5}) {
+    const std::string file = folder.write("scene.gltf", box_with_lamp(height).text());
+    ReferenceOptions options;
+    options.input = file;
+    options.random_points = 1;
+    options.samples = 16;
+    options.json_file = folder.path("r.json");
+    const Result<ReferenceResult> traced = reference(options);
+    ASSERT_TRUE(traced) << traced.error().line();
+    EXPECT_EQ(named(traced->warnings), height < 1 ? 1 : 0);
+    EXPECT_EQ(named(baked(draft(file, {folder.path("lit.glb")})).warnings), height < 1 ? 1 : 0);
+  }
 }
 
 TEST(BakeBadInput, WrongOptions) {

@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kExportAgain = "export the file again";
 constexpr const char* kPunctual = "KHR_lights_punctual";
 constexpr const char* kProfiled = "EXT_lights_ies";
+constexpr const char* kArea = "EXT_lights_area";
 
 /// A number of the extras, which are anything; 0 where there is none within 0 to `most`.
 float extra_number(const tinygltf::Value& extras, const char* key, double most) {
@@ -61,6 +62,7 @@ class LightReader {
   Status read(size_t node) {
     const auto* punctual = find_extension(model_.nodes[node].extensions, kPunctual);
     const auto* profiled = find_extension(model_.nodes[node].extensions, kProfiled);
+    if (find_extension(model_.nodes[node].extensions, kArea)) ++with_area_;
     if (profiled && punctual) ++with_both_;
     if (profiled) return read_profiled(node, *profiled);
     return punctual ? read_punctual(node, *punctual) : Nothing{};
@@ -72,6 +74,10 @@ class LightReader {
           "{} nodes have a light profile and a punctual light: each is one lamp, which shines as its profile "
           "says",
           with_both_));
+    if (with_area_ > 0)
+      scene_.warnings.push_back(fmt::format(
+          "{} area lights ({}) are left out: model them as surfaces that emit, or as lamps with a radius",
+          with_area_, kArea));
   }
 
  private:
@@ -168,7 +174,7 @@ class LightReader {
   const NodePlacements& nodes_;
   Scene& scene_;
   std::map<int, SharedProfile> profiles_;
-  size_t with_both_ = 0;
+  size_t with_both_ = 0, with_area_ = 0;
 };
 
 }  // namespace

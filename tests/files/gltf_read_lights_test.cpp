@@ -77,6 +77,15 @@ TEST(GltfLights, ASunsDiameterComesFromTheExtrasInDegrees) {
   EXPECT_EQ(diameter("point", 1), 0);
 }
 
+TEST(GltfLights, AreaLightsAreNamedAndLeftOut) {
+  GltfBuilder b = with_light({{"type", "point"}}, {});
+  b.doc["extensions"]["EXT_lights_area"]["lights"] = {{{"type", "disk"}}};
+  b.push("nodes", {{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
+  const Scene scene = read_built(b);
+  EXPECT_EQ(scene.lights.size(), 1u);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("1 area lights (EXT_lights_area) are left out")));
+}
+
 TEST(GltfLights, SpotShinesAlongMinusZTurned) {
   const Scene scene =
       read_built(with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}}}},

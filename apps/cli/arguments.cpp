@@ -176,6 +176,14 @@ void add_bake_effort(CLI::App& verb, BakeCommand& bake, BakeTexts& texts) {
   verb.add_option("--max-memory", texts.memory, "stay within, as 2G or 500M")
       ->type_name("BYTES")
       ->group(kEffort);
+  const auto without = [&](const char* name, bool& uses, const char* what) {
+    verb.add_flag_callback(
+            name, [&uses] { uses = false; }, what)
+        ->group(kEffort);
+  };
+  without("--no-shafts", bake.options.shafts, "cast rays where nothing stands between two elements, too");
+  without("--no-adaptive-sampling", bake.options.adaptive_sampling,
+          "cast as many rays for every link and point");
   verb.add_option("--seed", bake.options.seed, "another choice of random samples (0)")
       ->type_name("N")
       ->group(kEffort);

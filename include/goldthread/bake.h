@@ -39,6 +39,9 @@ struct BakeOptions : LightOptions {
   std::optional<uint64_t> max_memory;  ///< bytes of resident memory
   int threads = 0;                     ///< 0: all
   uint64_t seed = 0;
+  // What saves rays, each to be left out to learn what it is worth: certainty that nothing stands between two
+  // elements, and no more rays than what they decide is worth.
+  bool shafts = true, adaptive_sampling = true;
   bool fix_normals = false;                     ///< turn shells that are wound inside out
   int picture_width = 960, picture_height = 0;  ///< preview size; height 0 follows the camera's aspect
   std::string report_file;                      ///< JSON report, empty for none

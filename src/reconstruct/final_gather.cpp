@@ -102,16 +102,22 @@ class PointGather {
         return;
       }
     }
-    const uint32_t count = rays_for(brings / (whole_ + brings), link, s.kind, options_);
+    const uint32_t count = solver_.visibility().adaptive
+                               ? rays_for(brings / (whole_ + brings), link, s.kind, options_)
+                           : has_solid_angle(s.kind) ? options_.light_rays
+                                                     : 1;
     const bool uneven = is_surface(s.kind) && s.kind != ElementKind::kVolume &&
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);
-    if (count > 0)
+    if (link.sight == Sight::kClear) {
+      visible = 1;
+    } else if (count > 0) {
       visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible, &tint);
-    add_doubt(factor * luminance(b), visible, count);
+    }
+    if (link.sight == Sight::kSampled) add_doubt(factor * luminance(b), visible, count);
     if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
     sum_ += visible * factor * b * tint;
     if (!has_solid_angle(s.kind)) return;
@@ -129,7 +135,7 @@ class PointGather {
       SeenPoints places;
       const uint32_t batch = std::min(SeenPoints::kMost, count - first);
       const SeenShare part = solver_.visibility().look(
-          pool_, source, x_, n_, batch, first == 0 ? seed_ : hash(seed_, first), rays_, &places);
+          pool_, source, x_, n_, batch, first == 0 ? seed_ : hash(seed_, first), rays_, &places, link.sight);
       const float weight = static_cast<float>(batch) / static_cast<float>(count);
       share.seen += weight * part.seen;
       share.hidden += weight * part.hidden;

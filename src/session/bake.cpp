@@ -223,6 +223,8 @@ Status Bake::build_hierarchies(const CancelToken& stop) {
   const auto volumes = Clock::now();
   Effort effort = effort_for(tolerated());
   effort.solve.seed = static_cast<uint32_t>(options_.seed);
+  effort.solve.shafts = options_.shafts;
+  effort.solve.adaptive_sampling = options_.adaptive_sampling;
   solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
   report_.seconds.volume_clusters = since(volumes);
   report_.seconds.preprocess = since(begin);
@@ -304,6 +306,8 @@ void Bake::finish_report() {
   const SolveStats& stats = solver_->stats();
   report_.solver.elements = solver_->pool().count_by_kind();
   report_.solver.links = solver_->links().all().size();
+  for (const Link& link : solver_->links().all())
+    report_.solver.clear_links += link.sight == Sight::kClear ? 1 : 0;
   report_.solver.rays = stats.rays.rays;
   report_.solver.ray_time_share = std::min(1.0, static_cast<double>(stats.rays.nanoseconds) * 1e-9 /
                                                     std::max(1e-9, report_.seconds.solve * report_.threads));

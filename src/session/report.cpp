@@ -44,6 +44,7 @@ std::string BakeReport::json() const {
                  {"epsilon", solver.epsilon},
                  {"error_estimate", solver.error_estimate ? nlohmann::ordered_json(*solver.error_estimate)
                                                           : nlohmann::ordered_json()},
+                 {"clear_links", solver.clear_links},
                  {"link_error", solver.link_error},
                  {"interpolation_error", solver.interpolation_error}};
   j["power_lm"] = {{"emitted", power.emitted},

@@ -28,6 +28,7 @@ struct BakeReport {
     uint64_t links = 0, rays = 0, reconstruct_rays = 0;
     double ray_time_share = 0;
     uint64_t iterations = 0;
+    uint64_t clear_links = 0;  ///< without rays: all of the source is seen
     double epsilon = 0;
     double link_error = 0;  ///< root of the links' squared errors, over the light that lands
     std::optional<double>

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "math/box.h"
+#include "visibility/triangle_tree.h"
 
 namespace goldthread {
 namespace {
@@ -188,6 +189,8 @@ struct RayCaster::State {
   float epsilon = 0;
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;
+  std::vector<std::pair<std::span<const vec3>, std::span<const UVec3>>> geometries;  // Embree's own buffers
+  std::vector<TriangleTree> trees;                                                   // over these, for shafts
 
   uint32_t triangle_of(unsigned geometry, unsigned primitive) const {
     const std::vector<uint32_t>& map = geometry == 1 ? see_through.triangles : opaque;
@@ -230,6 +233,8 @@ struct RayCaster::State {
     auto* indices = static_cast<UVec3*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(UVec3), count));
     for (size_t i = 0; i < count; ++i) indices[i] = triangles[subset != nullptr ? (*subset)[i] : i];
+    geometries.emplace_back(std::span<const vec3>(vertices, positions.size()),
+                            std::span<const UVec3>(indices, count));
     if (id == 1) {
       rtcSetGeometryUserData(geometry, &see_through);
       rtcSetGeometryOccludedFilterFunction(geometry, filter_shadow);
@@ -384,12 +389,27 @@ bool RayCaster::is_coloured() const {
   return state_->see_through.coloured;
 }
 
+void RayCaster::prepare_shafts() const {
+  if (!state_->trees.empty()) return;
+  for (const auto& [positions, triangles] : state_->geometries)
+    state_->trees.emplace_back(positions, triangles);
+}
+
+bool RayCaster::is_clear(const Shaft& shaft) const {
+  GOLDTHREAD_CHECK_EQ(state_->trees.size(), state_->geometries.size());
+  for (const TriangleTree& tree : state_->trees)
+    if (!tree.is_clear(shaft)) return false;
+  return true;
+}
+
 float RayCaster::epsilon() const {
   return state_->epsilon;
 }
 
 uint64_t RayCaster::memory_bytes() const {
-  return static_cast<uint64_t>(std::max<int64_t>(0, state_->bytes.load(std::memory_order_relaxed)));
+  uint64_t bytes = static_cast<uint64_t>(std::max<int64_t>(0, state_->bytes.load(std::memory_order_relaxed)));
+  for (const TriangleTree& tree : state_->trees) bytes += tree.memory_bytes();
+  return bytes;
 }
 
 }  // namespace goldthread

@@ -11,6 +11,8 @@
 
 namespace goldthread {
 
+class Shaft;
+
 struct Ray {
   vec3 origin{0};
   vec3 direction{0};  ///< need not be unit: distances are in its lengths
@@ -78,6 +80,11 @@ class RayCaster {
   /// that are not far, in no order.
   void near(const vec3& point, float radius, const std::function<void(uint32_t triangle)>& visit) const;
 
+  /// Whether no triangle reaches into a shaft (TriangleTree::is_clear). prepare_shafts must have been called.
+  bool is_clear(const Shaft& shaft) const;
+  /// Builds what shafts are tested against, once. Not from within parallel loops.
+  void prepare_shafts() const;
+
   /// Metres by which ray ends should leave their surfaces: far above the rounding of the triangles'
   /// coordinates, far below anything visible. Surfaces closer than that lie in one place.
   float epsilon() const;
@@ -85,7 +92,7 @@ class RayCaster {
   /// Whether anything colours the light that it lets through.
   bool is_coloured() const;
 
-  uint64_t memory_bytes() const;  ///< what Embree has allocated for this scene
+  uint64_t memory_bytes() const;  ///< what Embree has allocated for this scene, and shafts need
 
  private:
   void closest(const Ray& ray, Hit& hit) const;

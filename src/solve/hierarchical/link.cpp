@@ -4,6 +4,7 @@
 
 #include "base/rng.h"
 #include "solve/hierarchical/point_transfer.h"
+#include "solve/hierarchical/sight.h"
 
 namespace goldthread {
 namespace {
@@ -52,6 +53,7 @@ Tint tint_of(const Visibility& visibility, const vec3& by_channel, float all) {
   return all > 0 && visibility.caster->is_coloured() ? Tint(by_channel / all) : Tint();
 }
 
+// No rays: all is seen.
 PointSample sample_point(const ElementPool& pool, const Visibility& visibility, ElementId source,
                          const SurfacePoint& x, uint32_t rays, uint32_t seed, RayCount& count) {
   PointSample out;
@@ -59,8 +61,9 @@ PointSample sample_point(const ElementPool& pool, const Visibility& visibility, 
   out.unoccluded = dot(out.transfer, x.normal);
   if (out.unoccluded <= 0) return {};
   const uint64_t before = count.rays;
-  vec3 tint;
-  const float v = visibility.fraction(pool, source, x.position, x.normal, rays, seed, count, 0, &tint);
+  vec3 tint(1);
+  const float v =
+      rays == 0 ? 1.0f : visibility.fraction(pool, source, x.position, x.normal, rays, seed, count, 0, &tint);
   out.rays = static_cast<uint32_t>(count.rays - before);
   out.received = out.unoccluded * v;
   if (is_surface(pool[source].kind)) out.received = std::min(1.0f, out.received);
@@ -264,8 +267,11 @@ PointSample sample_reciprocal(const ElementPool& pool, const Visibility& visibil
   std::array<SurfacePoint, 8> at;
   const std::span<SurfacePoint> points(at.data(), s.flat ? 4 : 8);
   pool.quadrature(link.source, points);
-  PointSample sample =
-      sample_points(pool, visibility, link.receiver, points, s.flat ? 4 : 2, link.source * 16, count);
+  PointSample sample = sample_points(pool, visibility, link.receiver, points,
+                                     link.sight == Sight::kClear ? 0
+                                     : s.flat                    ? 4
+                                                                 : 2,
+                                     link.source * 16, count);
   sample.received *= s.area / r.area;
   sample.unoccluded *= s.area / r.area;
   sample.by_channel *= s.area / r.area;
@@ -295,10 +301,12 @@ vec3 Tint::colour() const {
 }
 
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
-               uint32_t points, uint32_t rays_per_point, RayCount& ray_count) {
+               uint32_t points, uint32_t rays_per_point, RayCount& ray_count, Sight sight) {
   Link link;
   link.receiver = receiver;
   link.source = source;
+  link.sight = sight == Sight::kSampled ? certain_sight(pool, visibility, receiver, source) : sight;
+  if (link.sight == Sight::kClear) rays_per_point = 0;
   const bool polygon =
       pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
   (polygon ? link_polygon : link_cluster)(pool, visibility, link, points, rays_per_point, ray_count);
@@ -346,12 +354,31 @@ struct SeenElements {
   }
 };
 
+// Of a source that all of the receiver sees; what the link brings is exact but for its quadrature.
+void choose_view(const ElementPool& pool, const Visibility& visibility, const Link& link, SourceView* view,
+                 RayCount& count) {
+  if (view == nullptr) return;
+  const uint32_t seed = hash(link.receiver, link.source);
+  SeenElements places;
+  for (uint32_t i = 0; i < kFreshPoints; ++i) {
+    const UnitSquarePoint uv = r2_point(i, hash(link.receiver, visibility.seed));
+    const SurfacePoint x = pool.sample_at(link.receiver, uv.u, uv.v);
+    SeenPoints seen;
+    visibility.look(pool, link.source, x.position, x.normal, kFreshRays, seed + i, count, &seen,
+                    Sight::kClear);
+    for (uint32_t k = 0; k < seen.count; ++k)
+      places.add(pool.deepest(link.source, seen.points[k]), seen.weights[k]);
+  }
+  places.choose(*view, link.source, unit_float(hash(seed, 99)));
+}
+
 }  // namespace
 
 void measure_link(const ElementPool& pool, const Visibility& visibility, Link& link, float tolerance,
                   SourceView* view, RayCount& ray_count) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   if (link.receiver == link.source && r.kind == ElementKind::kVolume) return;
+  if (link.sight == Sight::kClear) return choose_view(pool, visibility, link, view, ray_count);
   const bool from_source = link.receiver != link.source && reciprocity_helps(r, s);
   const ElementId here = from_source ? link.source : link.receiver,
                   there = from_source ? link.receiver : link.source;
@@ -374,8 +401,10 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
   const bool costly = likely > 0.5f && pool[there].kind == ElementKind::kCluster && !pool[there].flat;
   const auto most = static_cast<float>(costly ? kFreshPoints : kMostPoints);
   const auto points =
-      static_cast<uint32_t>(std::clamp(std::ceil(wanted * kFreshRays / static_cast<float>(per_point)),
-                                       static_cast<float>(kFreshPoints), most));
+      !visibility.adaptive
+          ? static_cast<uint32_t>(most)
+          : static_cast<uint32_t>(std::clamp(std::ceil(wanted * kFreshRays / static_cast<float>(per_point)),
+                                             static_cast<float>(kFreshPoints), most));
   float received = 0, unoccluded = 0;
   vec3 by_channel(0);
   uint32_t rays = 0;

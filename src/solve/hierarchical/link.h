@@ -48,6 +48,7 @@ struct Link {
   Tint tint;                ///< of what gets through
   uint8_t visibility = 0;   ///< share of sample rays that got through, of 255
   uint8_t rays = 0;         ///< how many there were
+  Sight sight = Sight::kSampled;
   bool alive = true;
 };
 
@@ -74,8 +75,9 @@ inline vec3 seen_radiosity(const Link& link, std::span<const SourceView> views, 
   return link.tint.is_white() ? b : b * link.tint.colour();
 }
 
-/// Samples the transfer with `points` (4 or 8) receiver points of `rays_per_point` rays each.
+/// Samples the transfer with `points` (4 or 8) receiver points of `rays_per_point` rays each; without rays
+/// where `sight` is known to be clear. Where the rays all agree it is found out whether that is certain.
 Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId receiver, ElementId source,
-               uint32_t points, uint32_t rays_per_point, RayCount& ray_count);
+               uint32_t points, uint32_t rays_per_point, RayCount& ray_count, Sight sight = Sight::kSampled);
 
 }  // namespace goldthread

@@ -55,6 +55,7 @@ double likely_factor(const ElementPool& pool, const Link& link) {
     default:
       most = static_cast<double>(s.area) / (3.14159 * squared + static_cast<double>(s.area));
   }
+  if (link.sight == Sight::kClear) return std::max(static_cast<double>(link.unoccluded), most);
   // The share of the rays that arrive, were one more to arrive of two more (Laplace).
   const double seen = (link.visibility / 255.0 * link.rays + 1) / (link.rays + 2.0);
   return std::max(static_cast<double>(link.unoccluded), most * seen);
@@ -104,6 +105,7 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
 
 struct Child {
   ElementId receiver, source;
+  Sight sight;
 };
 
 // How many samples a link deserves: one for every way in which its receiver's normals or a hard shadow may
@@ -148,12 +150,14 @@ bool hopeless(const ElementPool& pool, const Child& child, float rounding) {
 
 void list_children(const ElementPool& pool, const Link& link, Decision decision, std::vector<Child>& out) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
+  const Sight sight = link.sight;  // what is clear as a whole is so in its parts
   if (decision == Decision::kBoth) {
-    for (uint32_t i = 0; i < 4; ++i) out.push_back({r.first_child + (i & 1), r.first_child + (i >> 1)});
+    for (uint32_t i = 0; i < 4; ++i)
+      out.push_back({r.first_child + (i & 1), r.first_child + (i >> 1), sight});
   } else if (decision == Decision::kReceiver) {
-    for (uint32_t i = 0; i < 2; ++i) out.push_back({r.first_child + i, link.source});
+    for (uint32_t i = 0; i < 2; ++i) out.push_back({r.first_child + i, link.source, sight});
   } else if (decision == Decision::kSource) {
-    for (uint32_t i = 0; i < 2; ++i) out.push_back({link.receiver, s.first_child + i});
+    for (uint32_t i = 0; i < 2; ++i) out.push_back({link.receiver, s.first_child + i, sight});
   }
 }
 
@@ -220,7 +224,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(pool, link);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
-  const double missed = unoccluded * (0.5 / (link.rays + 2.0));
+  const double missed = link.sight == Sight::kClear ? 0 : unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;
@@ -274,7 +278,7 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
                 children[i].receiver;  // always opened: no samples needed
           } else {
             all[first + i] = make_link(pool, visibility, children[i].receiver, children[i].source, points,
-                                       per_point, cast);
+                                       per_point, cast, children[i].sight);
           }
           rays.fetch_add(cast.rays, std::memory_order_relaxed);
           nanoseconds.fetch_add(cast.nanoseconds, std::memory_order_relaxed);

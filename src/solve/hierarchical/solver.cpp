@@ -9,11 +9,23 @@ namespace goldthread {
 
 HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster,
                                        const SolveOptions& options)
-    : options_(options), pool_(surfaces), regard_(surfaces), bound_(options.first_error) {
+    : options_(options),
+      pool_(surfaces),
+      regard_(surfaces),
+
+      bound_(options.first_error) {
   visibility_.caster = &caster;
+  Box box;
+  for (const Part& part : surfaces.parts)
+    for (const vec3& p : part.positions)
+      if (is_finite(p)) box.add(p);
+  visibility_.extent = box.diagonal();
   visibility_.epsilon = caster.epsilon();
   // Spread over all bits: seeds are small numbers, and so are some of what they are mixed with.
   visibility_.seed = options.seed == 0 ? 0 : hash(options.seed, 1);
+  visibility_.shafts = options.shafts;
+  visibility_.adaptive = options.adaptive_sampling;
+  if (options.shafts) caster.prepare_shafts();
   state_.grow_to(pool_);
   make_first_links();
 }

@@ -158,7 +158,8 @@ float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& 
 }  // namespace
 
 SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n,
-                           uint32_t rays, uint32_t turn, RayCount& count, SeenPoints* places) const {
+                           uint32_t rays, uint32_t turn, RayCount& count, SeenPoints* places,
+                           Sight sight) const {
   const SourceSampler sampler{pool, source, x, n, epsilon, hash(turn ^ seed, source)};
   const bool hides = sampler.hides_itself();
   const bool keep = places != nullptr && is_surface(sampler.e.kind);
@@ -198,7 +199,12 @@ SeenShare Visibility::look(const ElementPool& pool, ElementId source, const vec3
       packet[k] = found[chosen[k]];
       share[k] *= static_cast<float>(batch) / static_cast<float>(looked * rays);
     }
-    timed_packet(*caster, {packet.data(), cast}, {passing.data(), cast}, {colour.data(), cast}, count);
+    if (sight == Sight::kClear) {
+      std::fill_n(passing.begin(), cast, 1.0f);
+      std::fill_n(colour.begin(), cast, vec3(1));
+    } else {
+      timed_packet(*caster, {packet.data(), cast}, {passing.data(), cast}, {colour.data(), cast}, count);
+    }
     for (uint32_t k = 0; k < cast; ++k) {
       sum.seen += share[k] * passing[k];
       sum.hidden += share[k] * (1 - passing[k]);

@@ -34,17 +34,29 @@ struct SeenShare {
   vec3 by_channel{0};  ///< as `seen`, which is by each ray's best channel
 };
 
+/// Whether two elements see each other.
+enum class Sight : uint8_t {
+  kSampled,  ///< as rays say
+  kClear,    ///< all of the one sees all of the other, and so do all their parts
+};
+
 /// Rays between points and elements.
 struct Visibility {
   const RayCaster* caster = nullptr;  ///< borrowed
+  float extent = 0;                   ///< metres: no two places are further apart
   float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
   uint32_t seed = 0;                  ///< chooses among all patterns of points and rays
+  // Each can be left out, to learn what it is worth.
+  bool shafts = true;    ///< where nothing stands between two elements no rays are cast
+  bool adaptive = true;  ///< as many rays as a link or a point deserves; else as many for all
 
   /// Casts `rays` rays from `x` with unit normal `n` to points on the real triangles of `source`, or
   /// into the sky. `turn` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
   /// places where they arrived to `places` (surfaces only), if given. Not for point lights and suns.
+  /// With kClear no ray is cast, and all arrive.
   SeenShare look(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n, uint32_t rays,
-                 uint32_t turn, RayCount& count, SeenPoints* places = nullptr) const;
+                 uint32_t turn, RayCount& count, SeenPoints* places = nullptr,
+                 Sight sight = Sight::kSampled) const;
 
   /// Share of `source` seen from `x`, 0..1. A ratio of two sums over few rays: less noisy than `look`, and a
   /// little biased. `unknown` is the answer where the rays can tell nothing: `x` lies amid the source, and no

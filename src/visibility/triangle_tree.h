@@ -1,0 +1,38 @@
+// A box hierarchy over triangles, for questions that no ray can ask.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/box.h"
+#include "visibility/shaft.h"
+
+namespace goldthread {
+
+/// 32 bytes a node, a node for every two triangles about. Borrows positions and triangles.
+class TriangleTree {
+ public:
+  TriangleTree(std::span<const vec3> positions, std::span<const UVec3> triangles);
+
+  /// Whether no triangle reaches into the shaft. "No" may be wrong where "yes" is never (Shaft::excludes).
+  bool is_clear(const Shaft& shaft) const;
+
+  uint64_t memory_bytes() const {
+    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(uint32_t);
+  }
+
+ private:
+  struct Node {
+    Box box;
+    uint32_t first = 0;  // of order_, or the second child; the first follows its parent
+    uint32_t count = 0;  // of a leaf; 0 of an inner node
+  };
+  void build(size_t node, uint32_t begin, uint32_t end, std::span<const vec3> centres);
+
+  std::span<const vec3> positions_;
+  std::span<const UVec3> triangles_;
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> order_;
+};
+
+}  // namespace goldthread

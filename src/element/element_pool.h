@@ -105,6 +105,9 @@ class ElementPool {
 
   /// Share of the light on the other side of a surface element that leaves on this one.
   vec3 transmittance(ElementId id) const { return passages_.empty() ? vec3(0) : passages_[id].transmittance; }
+  /// The same piece of the other side; kNoElement where that is not cut so far, and where nothing gets
+  /// through.
+  ElementId twin(ElementId id) const { return passages_.empty() ? kNoElement : passages_[id].twin; }
   /// The smallest element of the other side, numbered below `end`, that holds the whole of `id` on it;
   /// kNoElement where there is no other side.
   ElementId behind(ElementId id, size_t end) const;

@@ -41,8 +41,8 @@ TEST(Translucent, SoDoVertices) {
     }
 }
 
-// One side is in a pattern of light that the other knows nothing of: it is cut far finer.
-TEST(Translucent, SidesThatAreCutApartKeepThePower) {
+// One side is in a pattern of light that the other knows nothing of.
+TEST(Translucent, WhatShinesThroughIsAsUnevenAndNoMore) {
   Scene scene;
   test::add(scene, test::parallelogram({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2),
             test::translucent(vec3(0.3f), vec3(0.5f)));
@@ -51,16 +51,20 @@ TEST(Translucent, SidesThatAreCutApartKeepThePower) {
   Solved solved(std::move(scene));
   solved.solve();
   double landed = 0, leaves_below = 0, above = 0;
+  float most_landed = 0, most_below = 0;
   for (const ElementId id : solved.leaves()) {
     const Element& e = solved.pool()[id];
     if (e.part != 0) continue;
     landed += e.back ? 0.0 : double(e.area * solved.state().irradiance[id].y);
     leaves_below += e.back ? double(e.area * solved.state().radiosity[id].y) : 0.0;
     above += e.back ? double(e.area * solved.state().irradiance[id].y) : 0.0;
+    most_below = std::max(most_below, e.back ? solved.state().radiosity[id].y : 0.0f);
+    most_landed = std::max(most_landed, e.back ? 0.0f : solved.state().irradiance[id].y);
   }
   EXPECT_GT(landed, 100);
   EXPECT_NEAR(leaves_below / landed, 0.5, 1e-3);
   EXPECT_EQ(above, 0);
+  EXPECT_FLOAT_EQ(most_below, 0.5f * most_landed);  // as bright a spot as the light behind makes
 }
 
 TEST(Translucent, NoSheetSendsOnMoreThanThereIs) {

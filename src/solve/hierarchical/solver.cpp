@@ -57,6 +57,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   const RefineCounters counters =
       refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
+  if (pool_.surfaces().has_translucent) cut_sides_alike();
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
   if (last) measure_all(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays);
   // The first steps only have to find where the light goes; the last has to settle.
@@ -66,6 +67,21 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   stats_.converged = last;
   bound_ = std::max(options_.last_error, bound_ * options_.error_ratio);
   return !last;
+}
+
+// What shines through a sheet is as uneven as the light behind it, which its own light knows nothing of: a
+// leaf is cut where its twin is.
+void HierarchicalSolver::cut_sides_alike() {
+  for (std::vector<ElementId> coarse;; coarse.clear()) {
+    for (ElementId id = 0; id < pool_.size(); ++id)
+      if (pool_[id].first_child == kNoElement && !pool_[id].indivisible &&
+          largest(pool_.transmittance(id)) > 0) {
+        const ElementId twin = pool_.twin(id);
+        if (twin != kNoElement && pool_[twin].first_child != kNoElement) coarse.push_back(id);
+      }
+    if (coarse.empty()) return;
+    cut_leaves(coarse);
+  }
 }
 
 void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken& cancel) {

@@ -70,6 +70,7 @@ class HierarchicalSolver {
  private:
   void make_first_links();
   double first_power() const;
+  void cut_sides_alike();
   void sweep(uint32_t most, double settled, const CancelToken& cancel);
 
   const SolveOptions options_;

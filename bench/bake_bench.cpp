@@ -7,32 +7,12 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
+#include "folder.h"
 #include "goldthread/bake.h"
 
 namespace goldthread {
 namespace {
-
-/// A folder of temporary files, removed in the end.
-class Folder {
- public:
-  Folder() {
-    std::string path = (std::filesystem::temp_directory_path() / "goldthread_bench_XXXXXX").string();
-    if (mkdtemp(path.data()) == nullptr) throw std::runtime_error("cannot make " + path);
-    path_ = path;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Bakes a scene of our own and returns the report.
 nlohmann::json bake_own(const Folder& folder, const std::string& name, uint64_t triangles, int threads) {

@@ -157,11 +157,17 @@ TEST(Link, AgreesWithTheClosedFormOfParallelSquares) {
   const ElementId a = surface_of_part(pool, 0), b = surface_of_part(pool, 1);
   EXPECT_NEAR(flux(pool, a, b), 0.1998248957, 1e-3);
   RayCount rays;
-  const Link link = make_link(pool, solved.solver->visibility(), a, b, 8, 4, rays);
-  EXPECT_NEAR(link.mean, 0.1998f, 0.02f);  // eight points
-  EXPECT_EQ(link.visibility, 255);
-  EXPECT_GT(rays.rays, 0u);
-  EXPECT_NEAR(link.unoccluded, 0.1998f, 0.02f);
+  solved.caster->prepare_shafts();
+  for (const bool shafts : {false, true}) {
+    Visibility visibility = solved.solver->visibility();
+    visibility.shafts = shafts;
+    rays = {};
+    const Link link = make_link(pool, visibility, a, b, 8, 4, rays);
+    EXPECT_NEAR(link.mean, 0.1998f, 0.02f);  // eight points
+    EXPECT_EQ(link.visibility, 255);
+    EXPECT_EQ(rays.rays == 0, shafts);
+    EXPECT_NEAR(link.unoccluded, 0.1998f, 0.02f);
+  }
 }
 
 TEST(Link, AWallBetweenBlocksAll) {

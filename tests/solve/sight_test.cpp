@@ -24,21 +24,26 @@ Scene between(float half, bool masked = false) {
   return scene;
 }
 
-Sight sight(const Solved& solved) {
+SolveOptions with_shafts(bool shafts = true) {
+  SolveOptions options = test::quick();
+  options.shafts = shafts;
+  return options;
+}
+
+Sight sight(Scene scene, bool shafts = true) {
+  const Solved solved(std::move(scene), with_shafts(shafts));
   const std::span<const ElementId> roots = solved.pool().surface_roots();
   return certain_sight(solved.pool(), solved.solver->visibility(), roots[0], roots[1]);
 }
 
 TEST(Sight, ClearWhereNothingStandsBetween) {
-  EXPECT_EQ(sight(Solved(between(0))), Sight::kClear);
-  EXPECT_EQ(sight(Solved(between(0.01f))), Sight::kSampled);  // rays may miss it
+  EXPECT_EQ(sight(between(0)), Sight::kClear);
+  EXPECT_EQ(sight(between(0.01f)), Sight::kSampled);  // rays may miss it
 }
 
 TEST(Sight, NothingIsCertainThroughGlassOrWithoutShafts) {
-  EXPECT_EQ(sight(Solved(between(1.1f, true))), Sight::kSampled);
-  SolveOptions options;
-  options.shafts = false;
-  EXPECT_EQ(sight(Solved(between(0), options)), Sight::kSampled);
+  EXPECT_EQ(sight(between(1.1f, true)), Sight::kSampled);
+  EXPECT_EQ(sight(between(0), false), Sight::kSampled);
 }
 
 /// Mean irradiance on the floor, rays, and links that are certain.
@@ -47,9 +52,7 @@ struct Outcome {
   uint64_t rays = 0, certain = 0;
 };
 Outcome solved(float half, bool shafts) {
-  SolveOptions options = test::quick();
-  options.shafts = shafts;
-  Solved s(between(half), options);
+  Solved s(between(half), with_shafts(shafts));
   s.solve();
   Outcome out;
   out.light = double(s.state().irradiance[s.pool().surface_roots()[0]].y);
@@ -67,6 +70,33 @@ TEST(Sight, SavesRaysAndChangesNoLight) {
     EXPECT_LT(with.rays, without.rays) << half;
   }
   EXPECT_EQ(solved(0, true).rays, 0u);  // an empty room needs none
+}
+
+// Every clear link of rooms full of things, held against rays between points of both ends.
+TEST(Sight, ClearLinksStopNoRay) {
+  for (const char* name : {"cornell-box", "office"}) {
+    Solved s(test::procedural(name, 0), with_shafts());
+    s.solve();
+    const Visibility& visibility = s.solver->visibility();
+    uint64_t clear = 0, stopped = 0, cast = 0;
+    for (const Link& link : s.solver->links().all()) {
+      if (link.sight != Sight::kClear || !is_surface(s.pool()[link.source].kind)) continue;
+      ++clear;
+      for (uint32_t i = 0; i < 16; ++i) {
+        const float u = (float(i) + 0.5f) / 16, v = std::fmod(float(i) * 0.618034f, 1.0f);
+        const SurfacePoint x = s.pool().sample_at(link.receiver, u, v),
+                           y = s.pool().sample_at(link.source, v, u);
+        if (dot(y.position - x.position, x.normal) <= 0 || dot(x.position - y.position, y.normal) <= 0)
+          continue;
+        const vec3 from = x.position + visibility.epsilon * x.normal,
+                   to = y.position + visibility.epsilon * y.normal;
+        stopped += visibility.caster->transmittance({from, to - from, 0, 1 - 1e-4f}) < 1;
+        ++cast;
+      }
+    }
+    EXPECT_GT(clear, 100u) << name;
+    EXPECT_EQ(stopped, 0u) << name << ": of " << cast;
+  }
 }
 
 }  // namespace

@@ -306,6 +306,7 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
   link.receiver = receiver;
   link.source = source;
   link.sight = sight == Sight::kSampled ? certain_sight(pool, visibility, receiver, source) : sight;
+  const uint32_t worth = points * rays_per_point;
   if (link.sight == Sight::kClear) rays_per_point = 0;
   const bool polygon =
       pool[receiver].kind == ElementKind::kTriangle || pool[receiver].kind == ElementKind::kPatch;
@@ -318,6 +319,8 @@ Link make_link(const ElementPool& pool, const Visibility& visibility, ElementId 
     link.tint = tint_of(visibility, sample.by_channel, sample.received);
     finish(link, sample.received, sample.unoccluded, link.rays + sample.rays);
   }
+  // The few points know no more of how the light bends than they would with rays.
+  if (link.sight == Sight::kClear) link.rays = static_cast<uint8_t>(std::min(worth, 255u));
   return link;
 }
 
@@ -354,31 +357,12 @@ struct SeenElements {
   }
 };
 
-// Of a source that all of the receiver sees; what the link brings is exact but for its quadrature.
-void choose_view(const ElementPool& pool, const Visibility& visibility, const Link& link, SourceView* view,
-                 RayCount& count) {
-  if (view == nullptr) return;
-  const uint32_t seed = hash(link.receiver, link.source);
-  SeenElements places;
-  for (uint32_t i = 0; i < kFreshPoints; ++i) {
-    const UnitSquarePoint uv = r2_point(i, hash(link.receiver, visibility.seed));
-    const SurfacePoint x = pool.sample_at(link.receiver, uv.u, uv.v);
-    SeenPoints seen;
-    visibility.look(pool, link.source, x.position, x.normal, kFreshRays, seed + i, count, &seen,
-                    Sight::kClear);
-    for (uint32_t k = 0; k < seen.count; ++k)
-      places.add(pool.deepest(link.source, seen.points[k]), seen.weights[k]);
-  }
-  places.choose(*view, link.source, unit_float(hash(seed, 99)));
-}
-
 }  // namespace
 
 void measure_link(const ElementPool& pool, const Visibility& visibility, Link& link, float tolerance,
                   SourceView* view, RayCount& ray_count) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   if (link.receiver == link.source && r.kind == ElementKind::kVolume) return;
-  if (link.sight == Sight::kClear) return choose_view(pool, visibility, link, view, ray_count);
   const bool from_source = link.receiver != link.source && reciprocity_helps(r, s);
   const ElementId here = from_source ? link.source : link.receiver,
                   there = from_source ? link.receiver : link.source;
@@ -389,6 +373,7 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
       is_surface(s.kind) && s.kind != ElementKind::kVolume && r.kind != ElementKind::kVolume;
   // How many points it takes is told by the first samples, never by these: to stop where they happen to agree
   // would lose light again.
+  const bool clear = link.sight == Sight::kClear;
   const float likely = (link.visibility / 255.0f * link.rays + 0.5f) / (link.rays + 1.0f);
   // To count what is seen or what is hidden is right on the average either way; the one that is likely to be
   // small has little to be wrong about.
@@ -427,7 +412,12 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
         continue;
       }
     }
-    if (form_factors) {
+    if (clear) {
+      arriving = is_surface(s.kind) ? std::min(1.0f, factor) : factor;
+      by_channel += arriving;
+      if (view != nullptr)
+        visibility.look(pool, there, x.position, x.normal, per_point, seed + i, ray_count, &seen, link.sight);
+    } else if (form_factors) {
       const SeenShare share = visibility.look(pool, there, x.position, x.normal, per_point, seed + i,
                                               ray_count, view != nullptr ? &seen : nullptr);
       arriving = count_seen ? share.seen : factor - share.hidden;
@@ -463,7 +453,8 @@ void measure_link(const ElementPool& pool, const Visibility& visibility, Link& l
     // average.
     mean -= std::clamp(dot(link.transfer, fit.middle()), -mean, mean);
     // What the first samples say of the slope is as good as what these do, ray for ray.
-    const float first = static_cast<float>(link.rays) / static_cast<float>(std::max(1u, link.rays + rays));
+    const float first =
+        clear ? 0.5f : static_cast<float>(link.rays) / static_cast<float>(std::max(1u, link.rays + rays));
     link.transfer = first * link.transfer + (1 - first) * fit.gradient();
     link.mean = link.ambient = mean;
     limit_gradient(link, r.radius);

@@ -47,7 +47,7 @@ struct Link {
   uint32_t view = kNoView;  ///< LinkPool::views, for sources that are unevenly bright
   Tint tint;                ///< of what gets through
   uint8_t visibility = 0;   ///< share of sample rays that got through, of 255
-  uint8_t rays = 0;         ///< how many there were
+  uint8_t rays = 0;         ///< how many there were, or would have been were the sight not clear
   Sight sight = Sight::kSampled;
   bool alive = true;
 };

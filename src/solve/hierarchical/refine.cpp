@@ -55,7 +55,6 @@ double likely_factor(const ElementPool& pool, const Link& link) {
     default:
       most = static_cast<double>(s.area) / (3.14159 * squared + static_cast<double>(s.area));
   }
-  if (link.sight == Sight::kClear) return std::max(static_cast<double>(link.unoccluded), most);
   // The share of the rays that arrive, were one more to arrive of two more (Laplace).
   const double seen = (link.visibility / 255.0 * link.rays + 1) / (link.rays + 2.0);
   return std::max(static_cast<double>(link.unoccluded), most * seen);
@@ -224,7 +223,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(pool, link);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
-  const double missed = link.sight == Sight::kClear ? 0 : unoccluded * (0.5 / (link.rays + 2.0));
+  const double missed = unoccluded * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;

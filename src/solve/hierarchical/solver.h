@@ -20,9 +20,9 @@ struct SolveOptions {
   double least_area = 2.5e-5;  ///< receivers are not cut below this share of the scene's area
   double settled =
       1e-4;  ///< iterate until a sweep changes reflected power by less than this share of landing light
-  uint64_t most_links = 0;                       ///< 0: no limit
-  uint32_t seed = 0;                             ///< another choice of sample points and rays
-  bool shafts = true, adaptive_sampling = true;  ///< Visibility's accelerators
+  uint64_t most_links = 0;                        ///< 0: no limit
+  uint32_t seed = 0;                              ///< another choice of sample points and rays
+  bool shafts = false, adaptive_sampling = true;  ///< Visibility's accelerators
 };
 
 /// What a solve has cost and reached.

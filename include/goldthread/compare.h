@@ -22,9 +22,9 @@ struct CompareOptions {
   uint64_t seed = 0;
   int threads = 0;  ///< 0: all
 
-  std::string json_file;    ///< figures; empty for none, "-" for standard output
-  /// Of solutions, every point as a line: x, y, z, normal (nx, ny, nz), irradiance of `first` and of what it is
-  /// measured against (lux, luminance), the latter's standard error, and 1 for points inside solids.
+  std::string json_file;  ///< figures; empty for none, "-" for standard output
+  /// Of solutions, every point as a line: x, y, z, normal (nx, ny, nz), irradiance of `first` and of what it
+  /// is measured against (lux, luminance), the latter's standard error, and 1 for points inside solids.
   std::string csv_file;
   std::string picture;      ///< .png: where `first` is under (blue), right (grey), over (red); empty for none
   double full_scale = 0.2;  ///< relative error that is fully blue or red

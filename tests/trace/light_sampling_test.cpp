@@ -177,7 +177,8 @@ TEST(LightSampling, LampsAreDrawnByWhatTheyBring) {
   std::vector<float> sums(lights.lamp_count());
   std::vector<int> drawn(lights.lamp_count(), 0);
   float whole = 0;
-  for (const Light& light : t.scene->lights) whole += Lamp(light).light_at(vec3(0), up, point(0)).irradiance.x;
+  for (const Light& light : t.scene->lights)
+    whole += Lamp(light).light_at(vec3(0), up, point(0)).irradiance.x;
   constexpr int kCount = 10000;
   for (int i = 0; i < kCount; ++i) {
     const LightSample light = lights.sample_lamp(vec3(0), up, (i + 0.5) / kCount, point(0), sums);

@@ -181,6 +181,8 @@ void add_bake_effort(CLI::App& verb, BakeCommand& bake, BakeTexts& texts) {
             name, [&uses] { uses = false; }, what)
         ->group(kEffort);
   };
+  without("--no-discontinuities", bake.options.discontinuities,
+          "cut surfaces regularly, not along the edges of shadows and the feet of what stands on them");
   without("--no-shafts", bake.options.shafts, "cast rays where nothing stands between two elements, too");
   without("--no-adaptive-sampling", bake.options.adaptive_sampling,
           "cast as many rays for every link and point");

@@ -42,7 +42,9 @@ struct BakeOptions : LightOptions {
   // What saves rays, each to be left out to learn what it is worth: certainty that nothing stands between two
   // elements, and no more rays than what they decide is worth.
   bool shafts = true, adaptive_sampling = true;
-  bool fix_normals = false;                     ///< turn shells that are wound inside out
+  bool discontinuities =
+      true;                  ///< cut surfaces along the edges of shadows and the feet of what stands on them
+  bool fix_normals = false;  ///< turn shells that are wound inside out
   int picture_width = 960, picture_height = 0;  ///< preview size; height 0 follows the camera's aspect
   std::string report_file;                      ///< JSON report, empty for none
   double exposure = 0;  ///< unlit and preview: multiplies light before tone mapping; 0 chooses

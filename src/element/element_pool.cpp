@@ -142,7 +142,7 @@ void ElementPool::make_lights() {
 }
 
 // Whether the element can have children; makes what has to be made one after another (cuts in the leaf mesh).
-bool ElementPool::prepare_children(ElementId id) {
+bool ElementPool::prepare_children(ElementId id, const CutPlane& cut) {
   const Element& element = elements_[id];
   switch (element.kind) {
     case ElementKind::kSky:
@@ -150,9 +150,9 @@ bool ElementPool::prepare_children(ElementId id) {
     case ElementKind::kCluster:
       return element.depth < 250;
     case ElementKind::kTriangle:
-      return split_patch(patch_of_triangle(element.part, element.shape));
+      return split_patch(patch_of_triangle(element.part, element.shape), cut);
     case ElementKind::kPatch:
-      return split_patch(element.shape);
+      return split_patch(element.shape, cut);
     case ElementKind::kVolume:
     case ElementKind::kPoint:
     case ElementKind::kSun:
@@ -161,11 +161,12 @@ bool ElementPool::prepare_children(ElementId id) {
   return false;
 }
 
-void ElementPool::expand(std::span<const ElementId> ids) {
+void ElementPool::expand(std::span<const ElementId> ids, std::span<const CutPlane> cuts) {
   const auto first = static_cast<ElementId>(elements_.size());
-  for (const ElementId id : ids) {
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const ElementId id = ids[i];
     if (elements_[id].first_child != kNoElement || elements_[id].indivisible) continue;
-    if (!prepare_children(id)) {
+    if (!prepare_children(id, cuts.empty() ? CutPlane() : cuts[i])) {
       elements_[id].indivisible = true;
       continue;
     }

@@ -80,6 +80,15 @@ struct ElementPolygon {
   std::span<const vec3> span() const { return {corners.data(), count}; }
 };
 
+/// A plane across which a triangle or patch is cut in two: dot(normal, p) = offset, normal unit or, for the
+/// cut that shape alone suggests, 0.
+struct CutPlane {
+  vec3 normal{0};
+  float offset = 0;
+  bool seam = false;  ///< LeafMesh::is_seam
+  bool present() const { return normal != vec3(0); }
+};
+
 class ElementPool {
  public:
   /// Makes the volume clusters, the surfaces' roots and the lights of `set`, which must outlive the pool.
@@ -95,7 +104,9 @@ class ElementPool {
   const SurfaceSet& surfaces() const { return *set_; }
 
   /// Gives each of `ids` (ascending, childless, divisible) its two children, or marks it indivisible.
-  void expand(std::span<const ElementId> ids);
+  /// Triangles and patches are cut along `cuts`, one for each of `ids`, if given: the two sides of a surface
+  /// are cut at once, as the first asks.
+  void expand(std::span<const ElementId> ids, std::span<const CutPlane> cuts = {});
 
   /// Share of light that stops at a surface element, by channel: Element::coverage, of coloured glass in its
   /// colours.
@@ -138,6 +149,10 @@ class ElementPool {
   const Box& box(ElementId id) const { return volume_boxes_[elements_[id].shape]; }
   /// Corners of a triangle or patch.
   ElementPolygon polygon(ElementId id) const;
+  /// Corners of a triangle (of the part's tree) of a face cluster.
+  ElementPolygon polygon(ElementId cluster, uint32_t triangle) const {
+    return triangle_polygon(elements_[cluster], triangle);
+  }
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
   const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_cell(id).corners; }
   /// SkyCells::relative_luminance.
@@ -185,8 +200,8 @@ class ElementPool {
   void fill_volume(ElementId id);
   void fill_samples(ElementId id);
   void fill_child(ElementId id);
-  bool prepare_children(ElementId id);
-  bool split_patch(uint32_t patch);
+  bool prepare_children(ElementId id, const CutPlane& cut);
+  bool split_patch(uint32_t patch, const CutPlane& cut);
   uint32_t patch_of_triangle(uint32_t part, uint32_t triangle);
   void store_polygon(Patch& patch);
   void fill_sky(Element& element, uint32_t cell) const;

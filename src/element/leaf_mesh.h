@@ -32,21 +32,29 @@ class LeafMesh {
   /// The face's corners in order, T-vertices included.
   void loop(uint32_t face, std::vector<uint32_t>& vertices) const;
 
+  /// Whether light may differ on the two sides of an edge that lies within a triangle: a wall stands there,
+  /// or a shadow ends.
+  bool has_seams() const { return !seam_.empty(); }
+  bool is_seam(uint32_t edge) const { return edge < seam_.size() && seam_[edge] != 0; }
+
   /// Puts a vertex at `position` on an edge, in both faces that share it. The new half-edge follows `edge`.
   uint32_t split_edge(uint32_t edge, const vec3& position);
 
   /// Cuts a face between the origins of two of its half-edges that are not neighbours. The part that starts
-  /// at `from` keeps the face's number; the other's new number is returned.
-  uint32_t split_face(uint32_t from, uint32_t to);
+  /// at `from` keeps the face's number; the other's new number is returned. `seam` is what is_seam will say
+  /// of the cut.
+  uint32_t split_face(uint32_t from, uint32_t to, bool seam = false);
 
   uint64_t memory_bytes() const;
 
  private:
   uint32_t add_edge(uint32_t origin, uint32_t face);
+  void mark_seam(uint32_t edge);
 
   std::vector<vec3> positions_;
   std::vector<uint32_t> origin_, next_, twin_, face_;
   std::vector<uint32_t> face_edge_, face_triangle_;
+  std::vector<uint8_t> seam_;  // by half-edge, as far as there is a seam
 };
 
 /// Aborts if loops, twins or areas are broken. For tests.

@@ -1,5 +1,6 @@
-// Cutting triangles and patches in two (thesis 4.4): across the longer side of the minimum-area rectangle,
-// snapped to corners and T-vertices nearby so that few new ones arise.
+// Cutting triangles and patches in two (thesis 4.4): along a plane that is asked for, where light jumps; else
+// across the longer side of the minimum-area rectangle, snapped to corners and T-vertices nearby so that few
+// new ones arise.
 #include <algorithm>
 
 #include "element/element_pool.h"
@@ -10,6 +11,10 @@ namespace {
 
 // How far, as a share of half the rectangle's length, the cut may move to meet a vertex.
 constexpr float kSnap = 0.2f;
+
+// The same where a plane is asked for: a vertex that a neighbour's cut along the same plane has made is met,
+// but the cut is where it should be. A piece that is all within this of the plane is none.
+constexpr float kTouch = 1e-3f;
 
 // An orthonormal frame whose third axis is `n`.
 void plane_axes(const vec3& n, vec3& u, vec3& v) {
@@ -49,6 +54,18 @@ CutFace measure(const LeafMesh& mesh, uint32_t face) {
   return cut;
 }
 
+// The same with distances from a plane; false where it does not clearly part the face.
+bool part_by(const LeafMesh& mesh, const CutPlane& plane, CutFace& cut) {
+  float low = 0, high = 0;
+  for (size_t i = 0; i < cut.edges.size(); ++i) {
+    float& d = cut.distance[i];
+    d = dot(plane.normal, mesh.positions()[mesh.origin(cut.edges[i])]) - plane.offset;
+    low = std::min(low, d);
+    high = std::max(high, d);
+  }
+  return -low > 2 * kTouch * cut.half_length && high > 2 * kTouch * cut.half_length;
+}
+
 // Where the cut's line leaves the face: the loop position of an edge from which it crosses, going one way.
 size_t find_crossing(const CutFace& cut, bool rising) {
   const size_t count = cut.edges.size();
@@ -59,12 +76,11 @@ size_t find_crossing(const CutFace& cut, bool rising) {
   return count;
 }
 
-// The half-edge that starts at the cut's end on edge `i`: an existing corner if one is near, else a new
-// vertex.
-uint32_t make_end(LeafMesh& mesh, const CutFace& cut, size_t i, bool snap) {
+// The half-edge that starts at the cut's end on edge `i`: an existing corner within `reach` of the line if
+// there is one, else a new vertex.
+uint32_t make_end(LeafMesh& mesh, const CutFace& cut, size_t i, float reach) {
   const size_t next = (i + 1) % cut.edges.size();
   const float here = std::abs(cut.distance[i]), there = std::abs(cut.distance[next]);
-  const float reach = snap ? kSnap * cut.half_length : 0.0f;
   if (std::min(here, there) <= reach) return cut.edges[here < there ? i : next];
   const vec3 a = mesh.positions()[mesh.origin(cut.edges[i])],
              b = mesh.positions()[mesh.origin(cut.edges[next])];
@@ -139,11 +155,14 @@ void ElementPool::store_polygon(Patch& patch) {
   patch.corners = static_cast<uint32_t>(kept.size());
 }
 
-bool ElementPool::split_patch(uint32_t number) {
+bool ElementPool::split_patch(uint32_t number, const CutPlane& plane) {
   if (patches_[number].first_child != kNoElement) return true;  // the other side has cut it already
   const Patch parent = patches_[number];
   LeafMesh& mesh = *leaf_meshes_[parent.part];
-  const CutFace cut = measure(mesh, parent.face);
+  CutFace cut = measure(mesh, parent.face);
+  const CutFace regular = cut;
+  const bool by_plane = plane.present() && part_by(mesh, plane, cut);
+  if (!by_plane) cut = regular;
   const size_t i = find_crossing(cut, true), j = find_crossing(cut, false);
   const size_t count = cut.edges.size();
   if (i == count || j == count || !(cut.half_length > 0)) return false;
@@ -154,11 +173,11 @@ bool ElementPool::split_patch(uint32_t number) {
     magnitude = std::max({magnitude, p.x, p.y, p.z});
   }
   if (cut.half_length < 1e-5f * magnitude) return false;
-  const bool snap = !would_degenerate(cut, i, j);
-  const uint32_t from = make_end(mesh, cut, i, snap);
-  const uint32_t to = make_end(mesh, cut, j, snap);
+  const float reach = (by_plane ? kTouch : would_degenerate(cut, i, j) ? 0.0f : kSnap) * cut.half_length;
+  const uint32_t from = make_end(mesh, cut, i, reach);
+  const uint32_t to = make_end(mesh, cut, j, reach);
   if (from == to || mesh.next(from) == to || mesh.next(to) == from) return false;
-  const uint32_t new_face = mesh.split_face(from, to);
+  const uint32_t new_face = mesh.split_face(from, to, by_plane && plane.seam);
   Patch a = parent, b = parent;
   a.first_child = b.first_child = kNoElement;
   b.face = new_face;

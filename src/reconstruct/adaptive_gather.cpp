@@ -120,7 +120,10 @@ void AdaptiveGather::update_points() {
         if (side.leaves[at.face] == kNoElement) continue;
         if (at.vertex >= side.first_kept.size()) side.first_kept.resize(at.vertex + 1, kNone);
         uint32_t kept = side.first_kept[at.vertex];
-        while (kept != kNone && dot(side.kept[kept].normal, at.normal) < 0.9999f) kept = side.kept[kept].next;
+        while (kept != kNone &&
+               (dot(side.kept[kept].normal, at.normal) < 0.9999f ||
+                lit.points.sides_of(at.vertex, at.position, side.kept[kept].place) != at.sides))
+          kept = side.kept[kept].next;
         const float reach = length(lit.points.face_centres[at.face] - at.position);
         if (kept == kNone || reach < kDrawnInAgain * side.kept[kept].reach ||
             (side.kept[kept].near_leaf != kNoElement &&
@@ -169,6 +172,7 @@ void AdaptiveGather::gather(const std::vector<Job>& jobs) {
         const float gain = horizon_gain(dot(point.normal, points.face_normals[point.face]), gathered.seen);
         found[i] = {point.normal,
                     gathered.irradiance * gain,
+                    x,
                     gathered.variance * gain * gain,
                     length(points.face_centres[point.face] - point.position),
                     is_hidden(gathered, x, n, count),

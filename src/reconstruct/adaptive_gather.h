@@ -40,7 +40,7 @@ class AdaptiveGather {
  private:
   // What has been gathered at a vertex, for each normal there.
   struct Kept {
-    vec3 normal{0}, light{0};
+    vec3 normal{0}, light{0}, place{0};
     float variance = 0;
     float reach = 0;  // metres to the middle of the face it was drawn into
     bool buried = false;

@@ -92,10 +92,54 @@ struct NormalSource {
 
 }  // namespace
 
+namespace {
+
+// Seams that are this near to parallel, as a sine, are one line that goes on.
+constexpr float kSameSeam = 1e-3f;
+constexpr size_t kMostSeams = 32;  // bits
+
+void note_seam(std::vector<vec3>& seams, const vec3& normal) {
+  for (const vec3& other : seams)
+    if (length(cross(other, normal)) < kSameSeam) return;
+  if (seams.size() < kMostSeams) seams.push_back(normal);
+}
+
+void collect_seams(const LeafView& view, const NormalSource& normals, PartPoints& out) {
+  if (view.leaves == nullptr || !view.leaves->has_seams()) return;
+  const LeafMesh& mesh = *view.leaves;
+  for (uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const uint32_t first = mesh.first_edge(f);
+    uint32_t edge = first;
+    do {
+      const uint32_t next = mesh.next(edge);
+      if (mesh.is_seam(edge)) {
+        const uint32_t a = mesh.origin(edge), b = mesh.origin(next);
+        const vec3 along = mesh.positions()[b] - mesh.positions()[a];
+        const vec3 n = normalize_or(cross(along, normals.geometric(view.triangle(f))), vec3(0));
+        if (n != vec3(0))
+          for (const uint32_t v : {a, b}) note_seam(out.seams[v], n);
+      }
+      edge = next;
+    } while (edge != first);
+  }
+}
+
+}  // namespace
+
+uint32_t PartPoints::sides_of(uint32_t vertex, const vec3& position, const vec3& place) const {
+  const auto found = seams.find(vertex);
+  if (found == seams.end()) return 0;
+  uint32_t sides = 0;
+  for (size_t i = 0; i < found->second.size(); ++i)
+    if (dot(found->second[i], place - position) > 0) sides |= 1u << i;
+  return sides;
+}
+
 PartPoints collect_light_points(const ElementPool& pool, uint32_t part, float normal_agreement) {
   const LeafView view(pool, part);
   const NormalSource normals(view);
   PartPoints out;
+  collect_seams(view, normals, out);
   std::vector<uint32_t> first_at(view.vertex_count(), kNoPoint);  // points at a vertex, as chains
   std::vector<uint32_t> next_at;
   std::vector<float> smallest;
@@ -115,11 +159,14 @@ PartPoints collect_light_points(const ElementPool& pool, uint32_t part, float no
     const float area = length(sum);
     for (const uint32_t v : loop) {
       const vec3 n = normals.at(t, flat, view.weights(t, v));
+      const uint32_t sides = out.sides_of(v, view.position(v), centre);
       uint32_t point = first_at[v];
-      while (point != kNoPoint && dot(out.points[point].normal, n) < normal_agreement) point = next_at[point];
+      while (point != kNoPoint &&
+             (dot(out.points[point].normal, n) < normal_agreement || out.points[point].sides != sides))
+        point = next_at[point];
       if (point == kNoPoint) {
         point = static_cast<uint32_t>(out.points.size());
-        out.points.push_back({view.position(v), n, f, v});
+        out.points.push_back({view.position(v), n, f, v, sides});
         next_at.push_back(first_at[v]);
         smallest.push_back(area);
         first_at[v] = point;

@@ -224,6 +224,7 @@ Status Bake::build_hierarchies(const CancelToken& stop) {
   Effort effort = effort_for(tolerated());
   effort.solve.seed = static_cast<uint32_t>(options_.seed);
   effort.solve.shafts = options_.shafts;
+  effort.solve.discontinuities = options_.discontinuities;
   effort.solve.adaptive_sampling = options_.adaptive_sampling;
   solver_ = std::make_unique<HierarchicalSolver>(surfaces_, *caster_, effort.solve);
   report_.seconds.volume_clusters = since(volumes);

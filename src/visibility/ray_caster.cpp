@@ -402,6 +402,13 @@ bool RayCaster::is_clear(const Shaft& shaft) const {
   return true;
 }
 
+void RayCaster::visit_near(
+    const Box& box, const vec3& normal, float offset, float slack,
+    const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const {
+  GOLDTHREAD_CHECK_EQ(state_->trees.size(), state_->geometries.size());
+  for (const TriangleTree& tree : state_->trees) tree.visit_near(box, normal, offset, slack, visit);
+}
+
 float RayCaster::epsilon() const {
   return state_->epsilon;
 }

@@ -11,6 +11,7 @@
 
 namespace goldthread {
 
+struct Box;
 class Shaft;
 
 struct Ray {
@@ -82,7 +83,10 @@ class RayCaster {
 
   /// Whether no triangle reaches into a shaft (TriangleTree::is_clear). prepare_shafts must have been called.
   bool is_clear(const Shaft& shaft) const;
-  /// Builds what shafts are tested against, once. Not from within parallel loops.
+  /// TriangleTree::visit_near over all triangles. prepare_shafts must have been called.
+  void visit_near(const Box& box, const vec3& normal, float offset, float slack,
+                  const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const;
+  /// Builds what shafts and boxes are tested against, once. Not from within parallel loops.
   void prepare_shafts() const;
 
   /// Metres by which ray ends should leave their surfaces: far above the rounding of the triangles'

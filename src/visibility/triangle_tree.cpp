@@ -96,4 +96,33 @@ bool TriangleTree::is_clear(const Shaft& shaft) const {
   return true;
 }
 
+void TriangleTree::visit_near(
+    const Box& box, const vec3& normal, float offset, float slack,
+    const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const {
+  if (nodes_.empty()) return;
+  const auto apart = [&](const Box& other) {
+    for (int k = 0; k < 3; ++k)
+      if (other.low[k] > box.high[k] + slack || other.high[k] < box.low[k] - slack) return true;
+    const vec3 half = 0.5f * other.size();
+    return std::abs(dot(normal, other.centre()) - offset) > dot(glm::abs(normal), half) + slack;
+  };
+  std::array<uint32_t, 64> stack;  // depth is the logarithm of a 32-bit number
+  size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const uint32_t at = stack[--depth];
+    const Node& node = nodes_[at];
+    if (node.box.empty() || apart(node.box)) continue;
+    if (node.count == 0) {
+      stack[depth++] = node.first;
+      stack[depth++] = at + 1;
+      continue;
+    }
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const UVec3& c = triangles_[order_[i]];
+      visit(positions_[c.x], positions_[c.y], positions_[c.z]);
+    }
+  }
+}
+
 }  // namespace goldthread

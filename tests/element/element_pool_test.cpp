@@ -293,5 +293,80 @@ TEST(ElementPool, NoSurfaceNoRoot) {
   EXPECT_EQ(elements.pool->root(), kNoElement);
 }
 
+/// A square of two triangles, both cut along x = 0.3.
+struct CutSquare : Elements {
+  std::vector<ElementId> triangles;
+
+  explicit CutSquare(bool seam) : Elements(square()) {
+    while (triangles.size() < 2) {
+      triangles.clear();
+      for (const ElementId id : leaves())
+        if ((*pool)[id].kind == ElementKind::kTriangle) triangles.push_back(id);
+      if (triangles.size() < 2) expand(1);
+    }
+    const CutPlane plane{{1, 0, 0}, 0.3f, seam};
+    pool->expand(triangles, std::vector<CutPlane>(2, plane));
+  }
+  static Scene square() {
+    Scene scene;
+    test::add(scene, test::square(1, 0, true), test::diffuse(0.5f));
+    return scene;
+  }
+};
+
+TEST(ElementPool, CutsAlongAPlaneWhereAsked) {
+  const CutSquare square(true);
+  for (const ElementId id : square.triangles) {
+    const ElementId child = (*square.pool)[id].first_child;
+    ASSERT_NE(child, kNoElement);
+    for (uint32_t c = 0; c < 2; ++c) {
+      const ElementPolygon polygon = square.pool->polygon(child + c);
+      float least = 2, most = -2;
+      for (const vec3& p : polygon.span()) {
+        least = std::min(least, p.x);
+        most = std::max(most, p.x);
+      }
+      EXPECT_TRUE(std::abs(most - 0.3f) < 1e-6f || std::abs(least - 0.3f) < 1e-6f) << least << " " << most;
+    }
+  }
+  // The second triangle meets the vertex that the first cut made on their common edge: three new ones in all.
+  const LeafMesh* mesh = square.pool->leaf_mesh(0);
+  ASSERT_NE(mesh, nullptr);
+  EXPECT_EQ(mesh->positions().size(), 4u + 3);
+  EXPECT_EQ(mesh->face_count(), 4u);
+  validate(*mesh);
+}
+
+TEST(ElementPool, APlaneThatMissesGivesTheRegularCut) {
+  Elements elements(CutSquare::square());
+  elements.expand(1);
+  std::vector<ElementId> triangles;
+  for (const ElementId id : elements.leaves())
+    if (elements.pool->operator[](id).kind == ElementKind::kTriangle) triangles.push_back(id);
+  ASSERT_FALSE(triangles.empty());
+  elements.pool->expand(triangles, std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 7, true}));
+  for (const ElementId id : triangles) EXPECT_NE((*elements.pool)[id].first_child, kNoElement);
+  EXPECT_FALSE(elements.pool->leaf_mesh(0)->has_seams());
+}
+
+TEST(ElementPool, CutsOfASeamStaySeams) {
+  CutSquare square(true);
+  square.expand(5);
+  const LeafMesh& mesh = *square.pool->leaf_mesh(0);
+  double seam = 0;
+  for (uint32_t f = 0; f < mesh.face_count(); ++f) {
+    uint32_t edge = mesh.first_edge(f);
+    do {
+      const vec3 a = mesh.positions()[mesh.origin(edge)], b = mesh.positions()[mesh.origin(mesh.next(edge))];
+      const bool on_line = std::abs(a.x - 0.3f) < 1e-6f && std::abs(b.x - 0.3f) < 1e-6f;
+      EXPECT_EQ(mesh.is_seam(edge), on_line);
+      if (mesh.is_seam(edge)) seam += double(length(b - a));
+      edge = mesh.next(edge);
+    } while (edge != mesh.first_edge(f));
+  }
+  EXPECT_NEAR(seam, 2 * 2, 1e-5);  // two metres, from both sides
+  EXPECT_FALSE(CutSquare(false).pool->leaf_mesh(0)->has_seams());
+}
+
 }  // namespace
 }  // namespace goldthread

@@ -241,5 +241,45 @@ TEST(OutputMesh, SourceCornersStayExactCorners) {
   EXPECT_EQ(corners.size(), p.positions.size());
 }
 
+/// A square whose triangles are cut along x = 0.3, cut on regularly `times` over on one side of it.
+Elements square_with_seam(bool seam, int times) {
+  Elements elements(scene_of(test::square(1, 0, true)));
+  elements.expand(1);
+  std::vector<ElementId> triangles;
+  for (const ElementId id : elements.leaves())
+    if ((*elements.pool)[id].kind == ElementKind::kTriangle) triangles.push_back(id);
+  elements.pool->expand(triangles, std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 0.3f, seam}));
+  for (int i = 0; i < times; ++i) {
+    std::vector<ElementId> beyond;
+    for (const ElementId id : elements.leaves())
+      if ((*elements.pool)[id].centre.x > 0.3f) beyond.push_back(id);
+    elements.pool->expand(beyond);
+  }
+  return elements;
+}
+
+// Two lights at every vertex of the seam, one for the faces on either side; nothing else changes.
+TEST(LightPoints, ASeamPartsTheLightOfItsSides) {
+  for (const int times : {0, 4}) {
+    const Elements with = square_with_seam(true, times), without = square_with_seam(false, times);
+    const PartPoints parted = collect_light_points(*with.pool, 0),
+                     joined = collect_light_points(*without.pool, 0);
+    std::set<uint32_t> on_seam;
+    for (const LightPoint& p : joined.points)
+      if (std::abs(p.position.x - 0.3f) < 1e-6f) on_seam.insert(p.vertex);
+    EXPECT_GE(on_seam.size(), 3u);
+    EXPECT_EQ(parted.points.size(), joined.points.size() + on_seam.size());
+    for (uint32_t f = 0; f + 1 < parted.corner_first.size(); ++f)
+      for (uint32_t c = parted.corner_first[f]; c < parted.corner_first[f + 1]; ++c) {
+        const LightPoint& p = parted.points[parted.corners[c]];
+        if (std::abs(p.position.x - 0.3f) > 1e-6f) continue;
+        const bool beyond = parted.face_centres[f].x > 0.3f;
+        EXPECT_EQ(parted.face_centres[p.face].x > 0.3f, beyond);
+        EXPECT_EQ(parted.sides_of(p.vertex, p.position, parted.face_centres[f]), p.sides);
+      }
+    expect_sound(with, 0);
+  }
+}
+
 }  // namespace
 }  // namespace goldthread

@@ -40,6 +40,8 @@ namespace {
 
 constexpr float kLeastOpenness = 1e-3f;
 constexpr float kBuried = 0.02f;
+// Irradiance below this share of the mean is none.
+constexpr float kNothing = 1e-6f;
 
 // Irradiance vectors by octant of the direction they come from; a column a colour channel.
 struct Octants {
@@ -124,9 +126,11 @@ struct Sweep {
   const std::vector<vec3>& old;  // radiosity shown before the sweep: the order of visits must not matter
   const std::vector<vec3>& old_irradiance;  // the same, for what is behind; empty where nothing comes through
   const Regard& regard;
+  const float nothing;  // lux: less is darkness
 
-  // Returns by how much the reflected power of all leaves below `id` has changed, lm.
-  float visit(ElementId id, const Octants& inherited) const {
+  // Returns by how much the reflected light of all leaves below `id` has changed: in lm, and in m^2 times its
+  // share.
+  vec2 visit(ElementId id, const Octants& inherited) const {
     const Element& e = pool[id];
     if (e.flat) return visit_flat(id, inherited, {});
     Octants octants = inherited;
@@ -144,7 +148,7 @@ struct Sweep {
       if (is_form_factor(link)) direct_share += link.mean;
     }
     if (e.first_child == kNoElement) return leaf(id, e, inherited, octants, direct, direct_share);
-    float left = 0, right = 0;
+    vec2 left(0), right(0);
     if (e.depth < 12) {
       parallel_invoke([&] { left = visit(e.first_child, octants); },
                       [&] { right = visit(e.first_child + 1, octants); });
@@ -156,7 +160,7 @@ struct Sweep {
     return left + right;
   }
 
-  float visit_flat(ElementId id, const Octants& above, Field field) const {
+  vec2 visit_flat(ElementId id, const Octants& above, Field field) const {
     const Element& e = pool[id];
     float faced = above.faced, seen = above.seen;
     for (const Link& link : links.into(id)) {
@@ -176,15 +180,15 @@ struct Sweep {
     Octants passed = above;
     passed.faced = faced;
     passed.seen = seen;
-    float change = 0;
+    vec2 change(0);
     for (uint32_t c = 0; c < 2; ++c)
       change += visit_flat(e.first_child + c, passed, field.moved(pool[e.first_child + c].centre - e.centre));
     pull(id, e);
     return change;
   }
 
-  float leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct,
-             float direct_share) const {
+  vec2 leaf(ElementId id, const Element& e, const Octants& inherited, const Octants& all, const vec3& direct,
+            float direct_share) const {
     vec3 irradiance = direct;
     float share = direct_share;
     if (e.cone_cosine < 0.95f) {
@@ -209,19 +213,21 @@ struct Sweep {
     return kind != ElementKind::kPoint && kind != ElementKind::kSun;
   }
 
-  float settle(ElementId id, const Element& e, const vec3& gathered, float share, float faced,
-               float seen) const {
+  vec2 settle(ElementId id, const Element& e, const vec3& gathered, float share, float faced,
+              float seen) const {
     // What a point sees adds up to one at most. Samples that say more would, between bright surfaces, let
     // light grow.
     const vec3 irradiance = gathered * std::min(1.0f, most_seen / std::max(share, 1e-20f));
-    const vec3 change = regard.of(e) * e.area * (e.reflectance + pool.transmittance(id)) *
-                        glm::abs(irradiance - state.irradiance[id]);
+    const float change =
+        regard.of(e) * e.area *
+        largest((e.reflectance + pool.transmittance(id)) * glm::abs(irradiance - state.irradiance[id]));
+    const float light = largest(glm::max(irradiance, state.irradiance[id])) + nothing;
     state.irradiance[id] = irradiance;
     state.radiosity[id] = leaving_light(pool, id, irradiance, old_irradiance);
     state.shown[id] = state.radiosity[id];
     state.openness[id] = e.area * (faced > 0 ? std::clamp(seen / faced, kLeastOpenness, 1.0f) : 1.0f);
     state.low[id] = state.high[id] = largest(state.radiosity[id]);
-    return largest(change);
+    return {change, change / std::max(light, 1e-30f)};
   }
 
   void pull(ElementId id, const Element& e) const {
@@ -245,16 +251,18 @@ struct Sweep {
 
 }  // namespace
 
-double gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state,
-                        float most_seen, const Regard& regard) {
-  if (pool.root() == kNoElement) return 0;
+SweepChange gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state,
+                             float most_seen, const Regard& regard) {
+  if (pool.root() == kNoElement) return {};
   const std::vector<vec3> old = state.shown;
   std::vector<vec3> old_irradiance;
   if (pool.surfaces().has_translucent) old_irradiance = state.irradiance;
-  const Sweep sweep{pool, links, state, most_seen, old, old_irradiance, regard};
-  const float change = sweep.visit(pool.root(), Octants{});
-  const vec3 all = regarded_power(pool, state, regard);
-  return static_cast<double>(change) / std::max(1e-30, static_cast<double>(largest(all)));
+  const float nothing = kNothing * largest(state.irradiance[pool.root()]);
+  const Sweep sweep{pool, links, state, most_seen, old, old_irradiance, regard, nothing};
+  const vec2 change = sweep.visit(pool.root(), Octants{});
+  const double all = static_cast<double>(largest(regarded_power(pool, state, regard)));
+  return {static_cast<double>(change.x) / std::max(1e-30, all),
+          static_cast<double>(change.y) / std::max(1e-30, regarded_area(pool, regard))};
 }
 
 vec3 landing_power(const ElementPool& pool, const RadiosityState& state) {

@@ -29,6 +29,9 @@ constexpr double kNoise = 0.5;
 // blotched.
 constexpr double kBlotch = 0.01;
 
+// Receivers with a foot are cut along it down to this share of the least area.
+constexpr float kLeastAtFoot = 1.0f / 64;
+
 // How much of an element's area cancels in its summed normal: 0 for a plane, 1 for a closed object.
 double turned_share(const Element& e) {
   return e.area > 0 ? std::max(0.0, 1 - static_cast<double>(length(e.summed_normal) / e.area)) : 0;
@@ -77,7 +80,7 @@ bool may_open_source(const Element& e, float least_area) {
   return e.kind == ElementKind::kSky ? divisible(e) : may_open_receiver(e, least_area);
 }
 
-Decision decide(const ElementPool& pool, const RadiosityState& state, const Link& link,
+Decision decide(const ElementPool& pool, const Feet& feet, const RadiosityState& state, const Link& link,
                 const RefineOptions& options) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
@@ -85,6 +88,10 @@ Decision decide(const ElementPool& pool, const RadiosityState& state, const Link
   const double weight = static_cast<double>(options.regard.of(pool[link.receiver]));
   error.receiver *= weight;
   error.source *= weight;
+  // On either side of a foot there may be another room, whatever the samples say.
+  if (feet.any(link.receiver) && link.receiver != link.source && s.kind != ElementKind::kVolume &&
+      may_open_receiver(r, kLeastAtFoot * options.least_area))
+    return Decision::kReceiver;
   if (error.total() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area),
              source = may_open_source(s, options.least_area);
@@ -162,8 +169,9 @@ void list_children(const ElementPool& pool, const Link& link, Decision decision,
 
 // Opens every element that a decision needs opened. One that turns out indivisible stays childless: its link
 // comes up again in the next wave with the other side.
-void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<const uint64_t> active,
-                   std::span<const Decision> decisions, RadiosityState& state) {
+void open_elements(ElementPool& pool, const Visibility& visibility, Feet& feet,
+                   const std::vector<Link>& links, std::span<const uint64_t> active,
+                   std::span<const Decision> decisions, RadiosityState& state, RayCount& rays) {
   std::vector<ElementId> wanted;
   for (size_t i = 0; i < active.size(); ++i) {
     const Link& link = links[active[i]];
@@ -174,7 +182,9 @@ void open_elements(ElementPool& pool, const std::vector<Link>& links, std::span<
   std::erase_if(wanted, [&](ElementId id) { return pool[id].first_child != kNoElement; });
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  pool.expand(wanted);
+  const LampLinks lamps(pool, state, links);
+  pool.expand(wanted, find_discontinuities(pool, visibility, wanted, feet, lamps, rays));
+  feet.grow_to(pool, visibility);
   state.grow_to(pool);
 }
 
@@ -232,9 +242,9 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   return error;
 }
 
-RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
-                      const RefineOptions& options, const CancelToken& cancel, RayCount& total_rays,
-                      const std::function<void()>& between_waves) {
+RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, Feet& feet,
+                      RadiosityState& state, const RefineOptions& options, const CancelToken& cancel,
+                      RayCount& total_rays, const std::function<void()>& between_waves) {
   RefineCounters counters;
   std::vector<Link>& all = links.all();
   std::vector<uint64_t> active(all.size());
@@ -244,8 +254,9 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   while (!active.empty() && !cancel.cancelled()) {
     decisions.assign(active.size(), Decision::kKeep);
     parallel_for(
-        active.size(), [&](size_t i) { decisions[i] = decide(pool, state, all[active[i]], options); }, 256);
-    open_elements(pool, all, active, decisions, state);
+        active.size(), [&](size_t i) { decisions[i] = decide(pool, feet, state, all[active[i]], options); },
+        256);
+    open_elements(pool, visibility, feet, all, active, decisions, state, total_rays);
     std::vector<uint64_t> next;
     children.clear();
     for (size_t i = 0; i < active.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "base/progress.h"
+#include "solve/hierarchical/discontinuity.h"
 #include "solve/hierarchical/link_pool.h"
 #include "solve/hierarchical/radiosity_state.h"
 #include "solve/hierarchical/regard.h"
@@ -30,12 +31,13 @@ struct LinkError {
 };
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 
-/// Refines breadth first until no link exceeds the bound. New elements are made as they are needed. Each wave
-/// of links is decided and sampled in parallel and laid out in a fixed order, so that the result does not
-/// depend on the threads. Rays are added to `rays` wave by wave; `between_waves` may be empty.
-RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, RadiosityState& state,
-                      const RefineOptions& options, const CancelToken& cancel, RayCount& rays,
-                      const std::function<void()>& between_waves);
+/// Refines breadth first until no link exceeds the bound and none leads to something with a foot (Feet) as a
+/// whole. New elements are made as they are needed. Each wave of links is decided and sampled in parallel and
+/// laid out in a fixed order, so that the result does not depend on the threads. Rays are added to `rays`
+/// wave by wave; `between_waves` may be empty.
+RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, Feet& feet,
+                      RadiosityState& state, const RefineOptions& options, const CancelToken& cancel,
+                      RayCount& rays, const std::function<void()>& between_waves);
 
 /// Measures all links anew, once no more will be refined, and looks at which places of uneven sources they
 /// see (measure_link). Rays are added to `rays`.

@@ -25,7 +25,9 @@ HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCast
   visibility_.seed = options.seed == 0 ? 0 : hash(options.seed, 1);
   visibility_.shafts = options.shafts;
   visibility_.adaptive = options.adaptive_sampling;
-  if (options.shafts) caster.prepare_shafts();
+  visibility_.discontinuities = options.discontinuities;
+  if (options.shafts || options.discontinuities) caster.prepare_shafts();
+  feet_.grow_to(pool_, visibility_);
   state_.grow_to(pool_);
   make_first_links();
 }
@@ -55,7 +57,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   refine_options.least_area = static_cast<float>(options_.least_area * regarded_area(pool_, regard_));
   refine_options.most_links = options_.most_links;
   const RefineCounters counters =
-      refine(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays, between_waves);
+      refine(pool_, visibility_, links_, feet_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   if (pool_.surfaces().has_translucent) cut_sides_alike();
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
@@ -84,17 +86,24 @@ void HierarchicalSolver::cut_sides_alike() {
   }
 }
 
+void HierarchicalSolver::cut_leaves(std::span<const ElementId> leaves) {
+  const LampLinks lamps(pool_, state_, links_.all());
+  pool_.expand(leaves, find_discontinuities(pool_, visibility_, leaves, feet_, lamps, stats_.rays));
+  feet_.grow_to(pool_, visibility_);
+  state_.grow_to(pool_);
+}
+
 void HierarchicalSolver::sweep(uint32_t most, double settled, const CancelToken& cancel) {
   // Single leaves may overstate what they see, up and down about evenly. Where bright walls face each other
   // across a gap and all do, light would grow for ever; then no leaf is let see more than there is.
   float most_seen = 1.25f;
   double before = std::numeric_limits<double>::max();
   for (uint32_t i = 0; i < most; ++i) {
-    const double change = gather_push_pull(pool_, links_, state_, most_seen, regard_);
+    const SweepChange change = gather_push_pull(pool_, links_, state_, most_seen, regard_);
     ++stats_.iterations;
-    if (i > 10 && change >= before) most_seen = 1;
-    before = change;
-    if (change < settled || cancel.cancelled()) break;
+    if (i > 10 && change.power >= before) most_seen = 1;
+    before = change.power;
+    if ((change.power < settled && change.relative < 10 * settled) || cancel.cancelled()) break;
   }
   double squares = 0;
   for (const Link& link : links_.all()) {

@@ -5,6 +5,7 @@
 
 #include "base/progress.h"
 #include "element/element_pool.h"
+#include "solve/hierarchical/discontinuity.h"
 #include "solve/hierarchical/link_pool.h"
 #include "solve/hierarchical/radiosity_state.h"
 #include "solve/hierarchical/refine.h"
@@ -18,11 +19,13 @@ struct SolveOptions {
   double last_error = 1e-5;    ///< the same in the last step
   double error_ratio = 0.25;   ///< each step's bound over the one before
   double least_area = 2.5e-5;  ///< receivers are not cut below this share of the scene's area
-  double settled =
-      1e-4;  ///< iterate until a sweep changes reflected power by less than this share of landing light
-  uint64_t most_links = 0;                        ///< 0: no limit
-  uint32_t seed = 0;                              ///< another choice of sample points and rays
-  bool shafts = false, adaptive_sampling = true;  ///< Visibility's accelerators
+  /// Iterate until a sweep changes reflected power by less than this share of landing light, and of each
+  /// place's own by less than ten times that.
+  double settled = 1e-4;
+  uint64_t most_links = 0;  ///< 0: no limit
+  uint32_t seed = 0;        ///< another choice of sample points and rays
+  /// Visibility's accelerators.
+  bool shafts = false, adaptive_sampling = true, discontinuities = false;
 };
 
 /// What a solve has cost and reached.
@@ -47,10 +50,8 @@ class HierarchicalSolver {
 
   /// Gives leaves (ascending ids) children for the sake of what is shown of them: no links lead to these, all
   /// above them are theirs. One that cannot be divided stays as it is.
-  void cut_leaves(std::span<const ElementId> leaves) {
-    pool_.expand(leaves);
-    state_.grow_to(pool_);
-  }
+  /// Cuts follow the light (find_discontinuities).
+  void cut_leaves(std::span<const ElementId> leaves);
 
   /// 0..1 by bounds done.
   double share_done() const;
@@ -78,6 +79,7 @@ class HierarchicalSolver {
   const Regard regard_;
   Visibility visibility_;
   LinkPool links_;
+  Feet feet_;
   RadiosityState state_;
   SolveStats stats_;
   double bound_;

@@ -21,10 +21,9 @@ Ray ray_between(const vec3& from, const vec3& from_normal, const vec3& to, const
   ray.origin = from + epsilon * from_normal;
   ray.direction = to + epsilon * to_normal - ray.origin;
   ray.near = 0;
-  // Ends short of the target by what its surface may stand out beside it; at closer quarters nothing fits
-  // between.
-  const float distance = length(ray.direction);
-  ray.far = distance > 4 * epsilon ? 1 - 2 * epsilon / distance : 0.0f;
+  // All the way, or what stands beside a wall on the far side would be seen through the gap; at close
+  // quarters nothing fits between.
+  ray.far = length(ray.direction) > 4 * epsilon ? 1.0f : 0.0f;
   return ray;
 }
 

@@ -47,8 +47,9 @@ struct Visibility {
   float epsilon = 1e-5f;              ///< metres by which ray ends leave their surfaces
   uint32_t seed = 0;                  ///< chooses among all patterns of points and rays
   // Each can be left out, to learn what it is worth.
-  bool shafts = false;   ///< where nothing stands between two elements no rays are cast
-  bool adaptive = true;  ///< as many rays as a link or a point deserves; else as many for all
+  bool shafts = false;           ///< where nothing stands between two elements no rays are cast
+  bool discontinuities = false;  ///< cuts follow the edges of shadows and the feet of what stands there
+  bool adaptive = true;          ///< as many rays as a link or a point deserves; else as many for all
 
   /// Casts `rays` rays from `x` with unit normal `n` to points on the real triangles of `source`, or
   /// into the sky. `turn` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost

@@ -1,0 +1,378 @@
+#include "solve/hierarchical/discontinuity.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+
+namespace goldthread {
+namespace {
+
+// A cut leaves on either side a strip at least this wide, as a share of the piece's radius: thinner ones wait
+// until the piece is smaller.
+constexpr float kThinnest = 0.005f;
+// How much of a cut something has to stand along.
+constexpr float kAlong = 0.5f;
+// Lines this near, as a share of the radius, are one.
+constexpr float kSameLine = 1e-3f;
+// A surface that shines and is smaller than this for its distance casts shadows that have an edge.
+constexpr float kSmall = 0.1f;
+// Places from which a lamp is looked for.
+constexpr uint32_t kLooks = 32;
+// A shadow's edge is worth a cut if it explains so much of who sees the lamp: less where one side of it is
+// all lit or all dark, as beside any edge of a convex shadow.
+constexpr float kExplains = 0.5f, kPartsClean = 0.1f;
+
+// Clusters of no more triangles than this are looked through for feet.
+constexpr uint32_t kFewTriangles = 64;
+
+// A line in a piece's plane: dot(normal, q) = offset, and how much of the part within the piece something
+// stands along.
+struct Line {
+  vec2 normal{0};
+  float offset = 0;
+  float covered = 0, length = 0;
+};
+
+// A triangle or patch in its own plane.
+struct Piece {
+  ElementPolygon polygon;
+  vec3 origin, normal, u, v;
+  float radius = 0;
+  std::array<vec2, kMaxPolygon> corners;
+
+  explicit Piece(const ElementPolygon& outline) : polygon(outline) {
+    vec3 sum(0);
+    origin = vec3(0);
+    for (size_t i = 0; i < polygon.count; ++i) {
+      origin += polygon.corners[i] / static_cast<float>(polygon.count);
+      if (i >= 2) sum += area_vector(polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]);
+    }
+    normal = normalize_or(sum, vec3(0, 1, 0));
+    u = normalize(std::abs(normal.x) > 0.6f ? vec3(normal.y, -normal.x, 0) : vec3(0, normal.z, -normal.y));
+    v = cross(normal, u);
+    for (size_t i = 0; i < polygon.count; ++i) {
+      corners[i] = flat(polygon.corners[i]);
+      radius = std::max(radius, length(corners[i]));
+    }
+  }
+
+  vec2 flat(const vec3& p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
+
+  CutPlane plane(const Line& line, bool seam) const {
+    const vec3 n = line.normal.x * u + line.normal.y * v;
+    return {n, line.offset + dot(n, origin), seam};
+  }
+
+  // Where the line enters and leaves, along its direction (-normal.y, normal.x); none where it leaves less
+  // than a strip on one side.
+  std::optional<vec2> chord(const Line& line) const {
+    float low = 0, high = 0, from = std::numeric_limits<float>::max(), to = -from;
+    const vec2 along(-line.normal.y, line.normal.x);
+    for (size_t i = 0; i < polygon.count; ++i) {
+      const vec2 &a = corners[i], &b = corners[(i + 1) % polygon.count];
+      const float da = glm::dot(line.normal, a) - line.offset, db = glm::dot(line.normal, b) - line.offset;
+      low = std::min(low, da);
+      high = std::max(high, da);
+      if ((da < 0) == (db < 0)) continue;
+      const float t = glm::dot(along, a + da / (da - db) * (b - a));
+      from = std::min(from, t);
+      to = std::max(to, t);
+    }
+    if (-low < kThinnest * radius || high < kThinnest * radius || !(from < to)) return {};
+    return vec2(from, to);
+  }
+};
+
+// The part of a triangle that lies in the piece's plane; none where it is a point, or all of it.
+bool meets_plane(const std::array<vec3, 3>& corners, const std::array<float, 3>& heights, vec3& from,
+                 vec3& to) {
+  size_t count = 0;
+  std::array<vec3, 3> found{};
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t next = (k + 1) % 3;
+    if (heights[k] == 0) found[count++] = corners[k];
+    if (heights[k] * heights[next] < 0)
+      found[count++] = corners[k] + heights[k] / (heights[k] - heights[next]) * (corners[next] - corners[k]);
+  }
+  from = found[0];
+  to = found[1];
+  return count == 2;
+}
+
+// Lines along which something stands on the piece or passes through it.
+class FootLines {
+ public:
+  FootLines(const Piece& piece, bool both_sides, float epsilon)
+      : piece_(piece), both_sides_(both_sides), epsilon_(epsilon) {}
+
+  void add(const vec3& a, const vec3& b, const vec3& c) {
+    const std::array<vec3, 3> corners{a, b, c};
+    std::array<float, 3> heights;
+    float highest = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      heights[k] = dot(corners[k] - piece_.origin, piece_.normal);
+      if (std::abs(heights[k]) <= epsilon_) heights[k] = 0;
+      highest = std::max(highest, heights[k]);
+    }
+    vec3 from, to;
+    if ((highest <= 0 && !both_sides_) || !meets_plane(corners, heights, from, to)) return;
+    add(piece_.flat(from), piece_.flat(to));
+  }
+
+  std::optional<Line> best() const {
+    const Line* best = nullptr;
+    for (const Line& line : lines_)
+      if (line.covered >= kAlong * line.length && (best == nullptr || line.covered > best->covered))
+        best = &line;
+    return best != nullptr ? std::optional(*best) : std::nullopt;
+  }
+
+ private:
+  void add(const vec2& from, const vec2& to) {
+    const float span = length(to - from);
+    if (!(span > kSameLine * piece_.radius)) return;
+    const vec2 along = (to - from) / span;
+    Line line;
+    line.normal = {along.y, -along.x};
+    line.offset = glm::dot(line.normal, from);
+    const std::optional<vec2> chord = piece_.chord(line);
+    if (!chord) return;
+    line.length = chord->y - chord->x;
+    const float start = glm::dot(along, from);
+    line.covered = std::min(chord->y, start + span) - std::max(chord->x, start);
+    if (line.covered <= kSameLine * piece_.radius) return;
+    for (Line& other : lines_) {
+      const float same = glm::dot(other.normal, line.normal) < 0 ? -1.0f : 1.0f;
+      if (length(other.normal - same * line.normal) > kSameLine ||
+          std::abs(other.offset - same * line.offset) > kSameLine * piece_.radius)
+        continue;
+      other.covered += line.covered;
+      return;
+    }
+    lines_.push_back(line);
+  }
+
+  const Piece& piece_;
+  const bool both_sides_;
+  const float epsilon_;
+  std::vector<Line> lines_;
+};
+
+std::optional<Line> find_foot(const ElementPool& pool, const Visibility& visibility, const Piece& piece,
+                              ElementId id) {
+  const SurfaceSet& set = pool.surfaces();
+  const bool both = set.scene->materials[set.parts[pool[id].part].material].lit_behind();
+  FootLines feet(piece, both, visibility.epsilon);
+  Box box;
+  for (const vec3& p : piece.polygon.span()) box.add(p);
+  visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), visibility.epsilon,
+                                [&](const vec3& a, const vec3& b, const vec3& c) { feet.add(a, b, c); });
+  return feet.best();
+}
+
+// The way from a place to the middle of a lamp; 0 where the lamp does not shine there.
+vec3 way_to(const ElementPool& pool, ElementId lamp, const vec3& x, float far) {
+  const Element& e = pool[lamp];
+  if (e.kind == ElementKind::kSun) return -far * pool.light(lamp).direction;
+  const vec3 way = e.centre - x;
+  if (is_surface(e.kind) && dot(way, e.summed_normal) >= 0) return vec3(0);
+  return way;
+}
+
+bool has_size(const ElementPool& pool, ElementId lamp) {
+  if (is_surface(pool[lamp].kind)) return true;
+  return pool.light(lamp).radius > 0 || pool.light(lamp).angular_diameter > 0;
+}
+
+// Places of the piece, and whether they see the lamp.
+struct Looks {
+  std::array<vec2, kLooks> places;
+  std::array<bool, kLooks> lit;
+  uint32_t count = 0, lit_count = 0;
+  std::vector<uint32_t> blockers;  // triangles that stand between
+};
+
+Looks look_for(const ElementPool& pool, const Visibility& visibility, const Piece& piece, ElementId id,
+               ElementId lamp, RayCount& rays) {
+  Looks looks;
+  const uint32_t pattern = hash(hash(id, lamp), visibility.seed);
+  for (uint32_t i = 0; i < kLooks; ++i) {
+    const UnitSquarePoint at = r2_point(i, pattern);
+    const vec3 x = pool.sample_at(id, at.u, at.v).position;
+    const vec3 way = way_to(pool, lamp, x, 2 * visibility.extent);
+    if (dot(way, piece.normal) <= 0) continue;
+    const float far = is_surface(pool[lamp].kind) ? 0.999f : 1.0f;
+    const Hit hit = visibility.caster->closest(Ray{x + visibility.epsilon * piece.normal, way, 0, far});
+    ++rays.rays;
+    looks.places[looks.count] = piece.flat(x);
+    looks.lit[looks.count++] = hit.missed();
+    if (hit.missed()) {
+      ++looks.lit_count;
+    } else {
+      looks.blockers.push_back(hit.triangle);
+    }
+  }
+  std::sort(looks.blockers.begin(), looks.blockers.end());
+  looks.blockers.erase(std::unique(looks.blockers.begin(), looks.blockers.end()), looks.blockers.end());
+  return looks;
+}
+
+// What of the variance of who sees the lamp is one between the sides of a line; 0 where that is not enough.
+float explained(const Looks& looks, const Line& line) {
+  float count = 0, lit = 0;
+  for (uint32_t i = 0; i < looks.count; ++i) {
+    if (glm::dot(line.normal, looks.places[i]) < line.offset) continue;
+    count += 1;
+    lit += looks.lit[i] ? 1.0f : 0.0f;
+  }
+  const auto all = static_cast<float>(looks.count), all_lit = static_cast<float>(looks.lit_count);
+  const float rest = all - count, rest_lit = all_lit - lit;
+  if (count == 0 || rest == 0) return 0;
+  const auto squares = [](float n, float seen) { return seen * (n - seen) / n; };
+  const float share = 1 - (squares(count, lit) + squares(rest, rest_lit)) / squares(all, all_lit);
+  const bool clean = lit == 0 || lit == count || rest_lit == 0 || rest_lit == rest;
+  return share >= (clean ? kPartsClean : kExplains) ? share : 0;
+}
+
+std::optional<Line> find_shadow_edge(const ElementPool& pool, const Visibility& visibility,
+                                     const Piece& piece, ElementId id, ElementId lamp, RayCount& rays) {
+  const Looks looks = look_for(pool, visibility, piece, id, lamp, rays);
+  if (looks.lit_count == 0 || looks.lit_count == looks.count) return {};
+  const SurfaceSet& set = pool.surfaces();
+  std::optional<Line> best;
+  float most = 0;
+  for (const uint32_t t : looks.blockers) {
+    const Part& part = part_of_triangle(set, t);
+    const UVec3& c = set.tree(part).mesh.triangles[t - part.first_triangle];
+    for (int k = 0; k < 3; ++k) {
+      const vec3 &a = part.positions[c[k]], &b = part.positions[c[(k + 1) % 3]];
+      // Shadows of the edge end where the plane through it and the lamp meets the piece.
+      const vec3 n = normalize_or(cross(b - a, way_to(pool, lamp, a, 1)), vec3(0));
+      const vec2 flat(dot(n, piece.u), dot(n, piece.v));
+      const float slope = length(flat);
+      if (!(slope > 1e-4f)) continue;
+      Line line;
+      line.normal = flat / slope;
+      line.offset = dot(n, a - piece.origin) / slope;
+      const float share = explained(looks, line);
+      if (share <= most || !piece.chord(line)) continue;
+      most = share;
+      best = line;
+    }
+  }
+  return best;
+}
+
+bool is_polygon(ElementKind kind) {
+  return kind == ElementKind::kTriangle || kind == ElementKind::kPatch;
+}
+
+CutPlane find_discontinuity(const ElementPool& pool, const Visibility& visibility, ElementId id,
+                            const Feet& feet, const LampLinks& lamps, RayCount& rays) {
+  if (!is_polygon(pool[id].kind)) return {};
+  if (feet.any(id)) return feet.of(id);
+  const Piece piece(pool.polygon(id));
+  for (const ElementId lamp : lamps.lamps_of(id))
+    if (const std::optional<Line> edge = find_shadow_edge(pool, visibility, piece, id, lamp, rays))
+      return piece.plane(*edge, !has_size(pool, lamp));
+  return {};
+}
+
+bool casts_edges(const ElementPool& pool, const Link& link) {
+  if (link.visibility == 0 || link.visibility == 255) return false;
+  const Element &r = pool[link.receiver], &s = pool[link.source];
+  if (s.kind == ElementKind::kPoint || s.kind == ElementKind::kSun) return true;
+  return s.kind != ElementKind::kSky && s.kind != ElementKind::kVolume && largest(s.exitance) > 0 &&
+         s.radius < kSmall * length(s.centre - r.centre);
+}
+
+}  // namespace
+
+LampLinks::LampLinks(const ElementPool& pool, const RadiosityState& state, std::span<const Link> links)
+    : pool_(pool) {
+  for (const Link& link : links)
+    if (link.alive && casts_edges(pool, link))
+      links_.push_back({link.receiver, link.source, link.unoccluded * largest(state.shown[link.source])});
+  std::sort(links_.begin(), links_.end(), [](const Entry& a, const Entry& b) {
+    return a.receiver < b.receiver || (a.receiver == b.receiver && a.lamp < b.lamp);
+  });
+}
+
+std::vector<ElementId> LampLinks::lamps_of(ElementId id) const {
+  std::vector<Entry> found;
+  for (; id != kNoElement; id = pool_[id].parent) {
+    const auto first = std::lower_bound(links_.begin(), links_.end(), id,
+                                        [](const Entry& e, ElementId r) { return e.receiver < r; });
+    for (auto at = first; at != links_.end() && at->receiver == id; ++at) found.push_back(*at);
+  }
+  std::sort(found.begin(), found.end(), [](const Entry& a, const Entry& b) {
+    return a.strength > b.strength || (a.strength == b.strength && a.lamp < b.lamp);
+  });
+  std::vector<ElementId> lamps;
+  lamps.reserve(found.size());
+  for (const Entry& entry : found) lamps.push_back(entry.lamp);
+  return lamps;
+}
+
+namespace {
+
+// The foot of an element; of a cluster that of any of its triangles.
+CutPlane find_foot(const ElementPool& pool, const Visibility& visibility, ElementId id) {
+  const Element& e = pool[id];
+  const auto look = [&](const ElementPolygon& polygon) {
+    const Piece piece(polygon);
+    const std::optional<Line> foot = find_foot(pool, visibility, piece, id);
+    return foot ? piece.plane(*foot, true) : CutPlane();
+  };
+  if (is_polygon(e.kind)) return look(pool.polygon(id));
+  if (e.kind != ElementKind::kCluster) return {};
+  const SurfaceSet& set = pool.surfaces();
+  const FaceCluster& node = set.tree(set.parts[e.part]).nodes[e.shape];
+  CutPlane foot;
+  if (node.count <= kFewTriangles)
+    for (uint32_t t = node.first; t < node.first + node.count && !foot.present(); ++t)
+      foot = look(pool.polygon(id, t));
+  return foot;
+}
+
+}  // namespace
+
+void Feet::grow_to(const ElementPool& pool, const Visibility& visibility) {
+  const size_t first = known_;
+  known_ = pool.size();
+  if (!visibility.discontinuities) return;
+  std::vector<CutPlane> found(known_ - first);
+  parallel_for(
+      found.size(),
+      [&](size_t i) { found[i] = find_foot(pool, visibility, static_cast<ElementId>(first + i)); }, 64);
+  for (size_t i = 0; i < found.size(); ++i)
+    if (found[i].present()) cuts_.emplace(static_cast<ElementId>(first + i), found[i]);
+}
+
+CutPlane Feet::of(ElementId id) const {
+  const auto found = cuts_.find(id);
+  return found != cuts_.end() ? found->second : CutPlane();
+}
+
+std::vector<CutPlane> find_discontinuities(const ElementPool& pool, const Visibility& visibility,
+                                           std::span<const ElementId> ids, const Feet& feet,
+                                           const LampLinks& lamps, RayCount& rays) {
+  std::vector<CutPlane> cuts(ids.size());
+  if (!visibility.discontinuities) return cuts;
+  std::atomic<uint64_t> cast{0};
+  parallel_for(
+      ids.size(),
+      [&](size_t i) {
+        RayCount count;
+        cuts[i] = find_discontinuity(pool, visibility, ids[i], feet, lamps, count);
+        cast.fetch_add(count.rays, std::memory_order_relaxed);
+      },
+      8);
+  rays.rays += cast.load();
+  return cuts;
+}
+
+}  // namespace goldthread

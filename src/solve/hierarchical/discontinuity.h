@@ -1,0 +1,57 @@
+// Where light jumps within a triangle or patch, so that it can be cut there (discontinuity meshing: Heckbert,
+// *Discontinuity Meshing for Radiosity*, 1992; thesis 9.2.1).
+#pragma once
+#include <unordered_map>
+#include <vector>
+
+#include "solve/hierarchical/link.h"
+#include "solve/hierarchical/radiosity_state.h"
+
+namespace goldthread {
+
+/// The links whose shadows may have edges worth a cut, by receiver: from lamps, suns, and surfaces that shine
+/// and are small for their distance, of which some of the receiver sees something and some does not.
+class LampLinks {
+ public:
+  /// `pool` is borrowed.
+  LampLinks(const ElementPool& pool, const RadiosityState& state, std::span<const Link> links);
+
+  /// Sources of those into an element and all above it, the strongest first.
+  std::vector<ElementId> lamps_of(ElementId id) const;
+
+ private:
+  struct Entry {
+    ElementId receiver = kNoElement, lamp = kNoElement;
+    float strength = 0;  // lux, were nothing in the way
+  };
+  const ElementPool& pool_;
+  std::vector<Entry> links_;
+};
+
+/// Where something stands on a triangle or patch or passes through it, along at least half of a cut: its
+/// foot. On either side there may be another room. Of clusters of few triangles it is known only that some
+/// triangle has one.
+class Feet {
+ public:
+  /// Looks for the feet of elements that are new since the last call. In parallel. Finds none where
+  /// Visibility::discontinuities is off.
+  void grow_to(const ElementPool& pool, const Visibility& visibility);
+
+  bool any(ElementId id) const { return cuts_.contains(id); }
+  /// Absent where there is none.
+  CutPlane of(ElementId id) const;
+
+ private:
+  std::unordered_map<ElementId, CutPlane> cuts_;
+  size_t known_ = 0;
+};
+
+/// For each of `ids` the plane along which light jumps most, or an absent one; for what is neither triangle
+/// nor patch always that. The foot, if there is one. Else the edge of a shadow: of the edges that hide a
+/// lamp, the one whose shadow best parts the places that see the lamp from those that do not. Absent
+/// throughout where Visibility::discontinuities is off. In parallel; adds the rays cast to `rays`.
+std::vector<CutPlane> find_discontinuities(const ElementPool& pool, const Visibility& visibility,
+                                           std::span<const ElementId> ids, const Feet& feet,
+                                           const LampLinks& lamps, RayCount& rays);
+
+}  // namespace goldthread

@@ -25,7 +25,7 @@ enum class ElementKind : uint8_t {
   kTriangle,  ///< an input triangle
   kPatch,     ///< a convex piece of one
   kSky,       ///< a spherical triangle of directions
-  kPoint,     ///< a point or spot light
+  kPoint,     ///< a point or spot light, or an area lamp
   kSun,       ///< a directional light
 };
 
@@ -54,7 +54,7 @@ struct Element {
   float cone_cosine = -1;  ///< normals lie within acos(this) of S
   float coverage = 1;
   vec3 reflectance{0};  ///< area average
-  vec3 exitance{0};     ///< lm/m^2, area average; for lights: cd (point), lux (sun), lm/m^2 (sky)
+  vec3 exitance{0};     ///< lm/m^2, area average; for lights: cd (point, area lamp), lux (sun), lm/m^2 (sky)
 };
 
 /// What elements have besides in scenes with glass or translucent surfaces.

@@ -105,21 +105,33 @@ mat4 looking(const vec3& position, const vec3& forward, const vec3& up) {
   return frame;
 }
 
-Json describe_punctual(const Light& light) {
-  constexpr const char* kNames[] = {"point", "spot", "directional"};
+/// What all kinds of lights have; of an intensity per m^2 where `area` is one.
+Json describe(const Light& light, const char* type, float area = 1) {
   const vec3 colour = glm::max(light.intensity, vec3(0));
   const float intensity = std::max(colour.x, std::max(colour.y, colour.z));
   const vec3 hue = intensity > 0 ? colour / intensity : vec3(1);
-  Json json = {{"type", kNames[static_cast<size_t>(light.kind)]},
-               {"color", json_array({&hue.x, 3})},
-               {"intensity", shortest(intensity)}};
+  Json json = {{"type", type}, {"color", json_array({&hue.x, 3})}, {"intensity", shortest(intensity / area)}};
   if (!light.name.empty()) json["name"] = light.name;
+  return json;
+}
+
+Json describe_punctual(const Light& light) {
+  constexpr const char* kNames[] = {"point", "spot", "directional"};
+  Json json = describe(light, kNames[static_cast<size_t>(light.kind)]);
   if (light.range > 0 && light.kind != LightKind::kDirectional) json["range"] = shortest(light.range);
   if (light.kind == LightKind::kSpot) {
     const float outer = std::clamp(light.outer_cone, 1e-4f, kPi / 2);
     json["spot"] = {{"innerConeAngle", shortest(std::clamp(light.inner_cone, 0.0f, outer * 0.9999f))},
                     {"outerConeAngle", outer == kPi / 2 ? double{1.5707963} : shortest(outer)}};
   }
+  return json;
+}
+
+/// EXT_lights_area, a draft: size is a rectangle's height, aspect its width over that, or a disc's diameter.
+Json describe_area(const Light& light) {
+  Json json = describe(light, light.kind == LightKind::kDisc ? "disk" : "rect", light.area());
+  json["size"] = shortest(light.size.y);
+  if (light.kind == LightKind::kRectangle) json["rect"] = {{"aspect", shortest(light.size.x / light.size.y)}};
   return json;
 }
 
@@ -130,6 +142,10 @@ class LightBuilder {
 
   Json punctual(const Light& light) {
     return {{"KHR_lights_punctual", {{"light", append("KHR_lights_punctual", describe_punctual(light))}}}};
+  }
+
+  Json area(const Light& light) {
+    return {{"EXT_lights_area", {{"light", append("EXT_lights_area", describe_area(light))}}}};
   }
 
   Json profiled(const Light& light) {
@@ -204,9 +220,11 @@ uint32_t build_node(GltfDocument& document, const mat4& transform, Json content)
 void build_lights(GltfDocument& document, const Scene& scene) {
   LightBuilder builder(document);
   for (const Light& light : scene.lights) {
-    Json node = {{"extensions", light.profile ? builder.profiled(light) : builder.punctual(light)}};
+    Json node = {{"extensions", light.profile      ? builder.profiled(light)
+                                : light.has_area() ? builder.area(light)
+                                                   : builder.punctual(light)}};
     if (!light.name.empty()) node["name"] = light.name;
-    const vec3 up = light.profile ? cross(light.across, light.direction) : vec3(0, 1, 0);
+    const vec3 up = light.profile || light.has_area() ? cross(light.across, light.direction) : vec3(0, 1, 0);
     build_node(document, looking(light.position, light.direction, up), std::move(node));
   }
 }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "files/gltf_read_container.h"
 #include "files/gltf_read_values.h"
 #include "files/ies_read.h"
+#include "scene/light_check.h"
 
 namespace goldthread {
 namespace {
@@ -17,6 +19,9 @@ constexpr const char* kExportAgain = "export the file again";
 constexpr const char* kPunctual = "KHR_lights_punctual";
 constexpr const char* kProfiled = "EXT_lights_ies";
 constexpr const char* kArea = "EXT_lights_area";
+
+/// No lamp is larger.
+constexpr float kMostMetres = 1e6f;
 
 /// A number of the extras, which are anything; 0 where there is none within 0 to `most`.
 float extra_number(const tinygltf::Value& extras, const char* key, double most) {
@@ -28,7 +33,7 @@ float extra_number(const tinygltf::Value& extras, const char* key, double most) 
 /// The format has no word for a lamp's size; exporters that keep it write it in the extras: a ball's radius
 /// in metres, and the degrees across a directional light's disc.
 float radius_of(const tinygltf::Value& extras) {
-  return extra_number(extras, "radius", 1e6);
+  return extra_number(extras, "radius", kMostMetres);
 }
 
 void place_light(const glm::dmat4& world, Light& light) {
@@ -52,6 +57,23 @@ Light convert_light(const tinygltf::Light& source, const glm::dmat4& world) {
   return light;
 }
 
+/// A number, `otherwise` where there is none; not a number where something else is.
+float strict_number(const tinygltf::Value& object, const char* key, float otherwise) {
+  return object.Has(key) ? number_member(object, key, std::numeric_limits<float>::quiet_NaN()) : otherwise;
+}
+
+/// Width and height, metres, before the node's scale; of a disc its diameter twice. The draft's first version
+/// has a width and a height, or a radius.
+vec2 area_lamp_size(const tinygltf::Value& source, LightKind kind) {
+  const float size = strict_number(source, "size", 1);
+  if (kind == LightKind::kDisc)
+    return vec2(source.Has("radius") ? 2 * strict_number(source, "radius", 0) : size);
+  if (source.Has("width") || source.Has("height"))
+    return {strict_number(source, "width", 1), strict_number(source, "height", 1)};
+  const tinygltf::Value* rectangle = object_member(source, "rect");
+  return {size * (rectangle ? strict_number(*rectangle, "aspect", 1) : 1.0f), size};
+}
+
 /// Reads the lights of one node after another.
 class LightReader {
  public:
@@ -62,7 +84,8 @@ class LightReader {
   Status read(size_t node) {
     const auto* punctual = find_extension(model_.nodes[node].extensions, kPunctual);
     const auto* profiled = find_extension(model_.nodes[node].extensions, kProfiled);
-    if (find_extension(model_.nodes[node].extensions, kArea)) ++with_area_;
+    if (const auto* area = find_extension(model_.nodes[node].extensions, kArea))
+      if (Status status = read_area(node, *area); !status) return status;
     if (profiled && punctual) ++with_both_;
     if (profiled) return read_profiled(node, *profiled);
     return punctual ? read_punctual(node, *punctual) : Nothing{};
@@ -74,10 +97,6 @@ class LightReader {
           "{} nodes have a light profile and a punctual light: each is one lamp, which shines as its profile "
           "says",
           with_both_));
-    if (with_area_ > 0)
-      scene_.warnings.push_back(fmt::format(
-          "{} area lights ({}) are left out: model them as surfaces that emit, or as lamps with a radius",
-          with_area_, kArea));
   }
 
  private:
@@ -106,6 +125,51 @@ class LightReader {
     const tinygltf::Value& all = root->Get("lights");
     return size_t(index) < all.ArrayLen() && all.Get(index).IsObject() ? &all.Get(index) : nullptr;
   }
+
+  /// The draft scales evenly, by the largest of the node's scales, and its luminance stays.
+  Status read_area(size_t node, const tinygltf::Value& extension) {
+    const int index = int_member(extension, "light").value_or(-1);
+    const tinygltf::Value* source = entry(kArea, index);
+    if (!source)
+      return bad_input(file_, place_of(node), fmt::format("there is no area light {}", index), kExportAgain);
+    Light light;
+    light.name = string_member(*source, "name");
+    const std::string shown = light.name.empty() ? fmt::format("area light {}", index)
+                                                 : fmt::format("area light {} \"{}\"", index, light.name);
+    if (light.name.empty()) light.name = model_.nodes[node].name;
+    const char* key = source->Has("type") || !source->Has("shape") ? "type" : "shape";
+    const std::string type = source->Has(key) ? string_member(*source, key) : "rect";
+    if (type != "rect" && type != "disk") {
+      scene_.warnings.push_back(
+          fmt::format("{}: kind \"{}\" is unknown; left out: write rect or disk", shown, type));
+      return Nothing{};
+    }
+    light.kind = type == "disk" ? LightKind::kDisc : LightKind::kRectangle;
+    const glm::dmat4& world = nodes_.world[node];
+    place_light(world, light);
+    const auto scale = static_cast<float>(
+        std::max({glm::length(dvec3(world[0])), glm::length(dvec3(world[1])), glm::length(dvec3(world[2]))}));
+    const vec2 own = area_lamp_size(*source, light.kind);
+    light.size = scale * own;
+    if (!is_length(light.size.x) || !is_length(light.size.y)) {
+      scene_.warnings.push_back(fmt::format(
+          "{}: a size of {:g} x {:g} m, {:g} times that on node {}, has no area; left out: give it lengths "
+          "above 0",
+          shown, own.x, own.y, scale, node));
+      return Nothing{};
+    }
+    float nits = strict_number(*source, "intensity", 1000);
+    if (!(nits >= 0 && nits <= kMostLight)) {
+      scene_.warnings.push_back(
+          fmt::format("{}: an intensity of {:g} nits is no light; taken as 0", shown, nits));
+      nits = 0;
+    }
+    light.intensity = vector_member(*source, "color", vec3(1)) * (nits * light.area());
+    scene_.lights.push_back(std::move(light));
+    return Nothing{};
+  }
+
+  static bool is_length(float metres) { return metres > 0 && metres < kMostMetres; }
 
   Status read_profiled(size_t node, const tinygltf::Value& extension) {
     const int index = int_member(extension, "light").value_or(-1);
@@ -174,7 +238,7 @@ class LightReader {
   const NodePlacements& nodes_;
   Scene& scene_;
   std::map<int, SharedProfile> profiles_;
-  size_t with_both_ = 0, with_area_ = 0;
+  size_t with_both_ = 0;
 };
 
 }  // namespace

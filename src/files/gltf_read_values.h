@@ -15,10 +15,10 @@ namespace goldthread {
 /// Whether a file may require this extension without our having to say anything: it is read, or it changes
 /// nothing about diffuse light. Compression is undone before anyone asks.
 inline bool is_known_extension(std::string_view name) {
-  constexpr std::array<std::string_view, 10> kKnown = {
+  constexpr std::array<std::string_view, 11> kKnown = {
       "KHR_mesh_quantization", "KHR_texture_transform",  "KHR_lights_punctual", "KHR_texture_basisu",
       "EXT_lights_ies",        "EXT_lights_image_based", "EXT_texture_webp",    "EXT_mesh_gpu_instancing",
-      "KHR_xmp_json_ld",       "KHR_animation_pointer"};
+      "KHR_xmp_json_ld",       "KHR_animation_pointer",  "EXT_lights_area"};
   return name.starts_with("KHR_materials_") || std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
 }
 

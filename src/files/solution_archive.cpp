@@ -356,6 +356,25 @@ bool visit_lights(Unpacker& a, std::vector<Light>& lights) {
   return a.finished() && restore(std::move(stored), lights);
 }
 
+// Widths and heights, where there are area lamps: files without them are as they were before there were any.
+bool visit_lamp_sizes(Packer& a, const std::vector<Light>& lights) {
+  std::vector<vec2> sizes;
+  bool any = false;
+  for (const Light& light : lights) {
+    sizes.push_back(light.size);
+    any |= light.has_area();
+  }
+  if (any) a(sizes);
+  return true;
+}
+bool visit_lamp_sizes(Unpacker& a, std::vector<Light>& lights) {
+  std::vector<vec2> sizes;
+  a(sizes);
+  if (!a.finished() || sizes.size() != lights.size()) return false;
+  for (size_t i = 0; i < sizes.size(); ++i) lights[i].size = sizes[i];
+  return true;
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
@@ -368,6 +387,7 @@ bool visit_section(A& a, V& solution, const std::string& name) {
   if (name == "meshes") return a(scene.meshes), true;
   if (name == "instances") return a(scene.instances), true;
   if (name == "lights") return visit_lights(a, scene.lights);
+  if (name == "lamp_sizes") return visit_lamp_sizes(a, scene.lights);
   if (name == "cameras") return a(scene.cameras), true;
   if (name == "lighting") return a(solution.lighting.revision, solution.lighting.primitives), true;
   return false;
@@ -377,11 +397,11 @@ bool visit_section(A& a, V& solution, const std::string& name) {
 
 std::vector<std::string> section_names() {
   return {"report",    "scene",  "sky",     "images",   "materials", "meshes",
-          "instances", "lights", "cameras", "lighting", "passages"};
+          "instances", "lights", "cameras", "lighting", "passages",  "lamp_sizes"};
 }
 
 bool is_optional_section(const std::string& name) {
-  return name == "passages";
+  return name == "passages" || name == "lamp_sizes";
 }
 
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "files/solution_archive.h"
 
@@ -59,6 +60,13 @@ std::string check_lit(const LitPrimitive& lit, const Scene& scene) {
   return "";
 }
 
+std::string check_light(const Light& light) {
+  if (light.kind > LightKind::kDisc) return "of an unknown kind";
+  if (!light.has_area()) return "";
+  const auto is_length = [](float metres) { return metres > 0 && std::isfinite(metres); };
+  return is_length(light.size.x) && is_length(light.size.y) ? "" : "without an area";
+}
+
 std::string check_meshes(const Scene& scene) {
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (size_t p = 0; p < scene.meshes[m].primitives.size(); ++p)
@@ -83,8 +91,8 @@ std::string find_contradiction(const Solution& solution) {
   for (size_t i = 0; i < scene.instances.size(); ++i)
     if (scene.instances[i].mesh >= scene.meshes.size()) return fmt::format("instance {} has no mesh", i);
   for (size_t i = 0; i < scene.lights.size(); ++i)
-    if (scene.lights[i].kind > LightKind::kDirectional)
-      return fmt::format("light {} is of an unknown kind", i);
+    if (std::string problem = check_light(scene.lights[i]); !problem.empty())
+      return fmt::format("light {} is {}", i, problem);
   for (size_t i = 0; i < solution.lighting.primitives.size(); ++i)
     if (std::string problem = check_lit(solution.lighting.primitives[i], scene); !problem.empty())
       return fmt::format("lighting {} has {}", i, problem);

@@ -27,8 +27,11 @@ std::vector<std::string> describe_buried_lamps(const Scene& scene,
     const Light& light = scene.lights[i];
     if (light.kind == LightKind::kDirectional || !(luminance(light.intensity) > 0)) continue;
     int others = 0;
-    for (int look = 0; look < kLooks && others <= kFew; ++look)
-      others += ends_on_back({light.position, even_direction(look)}) ? 0 : 1;
+    for (int look = 0; look < kLooks && others <= kFew; ++look) {
+      const vec3 way = even_direction(look);
+      if (light.has_area() && dot(way, light.direction) <= 0) continue;  // it does not shine there
+      others += ends_on_back({light.position, way}) ? 0 : 1;
+    }
     if (others > kFew) continue;
     lines.push_back(fmt::format("light {} \"{}\" is inside a closed solid and lights nothing outside of it",
                                 i, light.name));

@@ -26,6 +26,24 @@ struct LightFacts {
   double mean_reflectance() const { return area > 0 ? reflectance_sum / area : 0; }
 };
 
+/// The area lamps of a scene, rectangles and discs.
+struct AreaLampFacts {
+  uint64_t count = 0;
+  double area = 0;   ///< m2
+  double power = 0;  ///< lumen: pi * luminance * area
+};
+
+AreaLampFacts area_lamps_in(const Scene& scene) {
+  AreaLampFacts facts;
+  for (const Light& light : scene.lights) {
+    if (!light.has_area()) continue;
+    ++facts.count;
+    facts.area += double(light.area());
+    facts.power += double(kPi * luminance(light.intensity));
+  }
+  return facts;
+}
+
 struct SceneFacts {
   MeshFacts mesh;
   LightFacts light;
@@ -154,6 +172,8 @@ std::string counts_text(const Scene& scene, const SceneFacts& facts) {
   add("lamps", fmt::format("{}", scene.lights.size()));
   for (const ProfileUse& use : profiles_in(scene))
     add("", fmt::format("{} by {}, {:.4g} lm", use.lamps, use.name, use.lumens));
+  if (const AreaLampFacts lamps = area_lamps_in(scene); lamps.count > 0)
+    add("", fmt::format("{} area lamps, {:.4g} m2, {:.4g} lm", lamps.count, lamps.area, lamps.power));
   add("cameras", fmt::format("{}", scene.cameras.size()));
   add("size", fmt::format("{:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z));
   add("area", fmt::format("{:.4g} m2", facts.light.area));
@@ -183,6 +203,8 @@ nlohmann::ordered_json facts_json(const Scene& scene, const SceneFacts& facts) {
                                  {"textures", scene.images.size()},
                                  {"lights", scene.lights.size()},
                                  {"cameras", scene.cameras.size()}};
+  const AreaLampFacts lamps = area_lamps_in(scene);
+  json["area_lamps"] = {{"count", lamps.count}, {"area_m2", lamps.area}, {"power_lm", lamps.power}};
   json["light_profiles"] = to_json(profiles_in(scene));
   if (!facts.bounds.empty())
     json["bounds"] = {{"low", to_json(facts.bounds.low)}, {"high", to_json(facts.bounds.high)}};

@@ -195,23 +195,40 @@ struct Counter {
     return share * by_area.total() * all;
   }
 
-  // Flux of a point or spot light: all of it, and the shares that land and that fall on backs.
+  // A ray of a lamp's light: of a point or spot light one of all ways, with the share of the intensity that
+  // goes there; of an area lamp from anywhere on it, by the cosine, each of the same share.
+  struct LampRay {
+    Ray ray;
+    double strength = 1;
+  };
+  LampRay lamp_ray(const Light& light, uint32_t i) const {
+    if (!light.has_area()) {
+      const UnitSquarePoint uv = r2_point(i, seed + 3);
+      const float z = 1 - 2 * uv.u, r = std::sqrt(std::max(0.0f, 1 - z * z)), angle = 2 * kPi * uv.v;
+      const vec3 d(r * std::cos(angle), r * std::sin(angle), z);
+      return {{light.position, d}, static_cast<double>(light_distribution(light, d))};
+    }
+    const auto [uv, at] = r4_point(i, seed + 3);
+    vec2 place(at.u - 0.5f, at.v - 0.5f);
+    if (light.kind == LightKind::kDisc)
+      place = 0.5f * std::sqrt(at.u) * vec2(std::cos(2 * kPi * at.v), std::sin(2 * kPi * at.v));
+    place *= light.size;
+    const vec3 up = cross(light.direction, light.across);
+    return {{light.position + place.x * light.across + place.y * up +
+                 solver.visibility().epsilon * light.direction,
+             cosine_direction(light.direction, uv.u, uv.v)}};
+  }
+
+  // Flux of a lamp that is somewhere: all of it, and the shares that land and that fall on backs.
   void from_point(ElementId id, double& all, double& landing, double& on_backs) const {
     const Light& light = pool().light(id);
     const double intensity = static_cast<double>(luminance(light.intensity));
     double sum = 0, landed = 0, backs = 0;
     const uint32_t count = std::min(rays, 100000u);
     for (uint32_t i = 0; i < count; ++i) {
-      const UnitSquarePoint uv = r2_point(i, seed + 3);
-      const float z = 1 - 2 * uv.u, r = std::sqrt(std::max(0.0f, 1 - z * z)), angle = 2 * kPi * uv.v;
-      const vec3 d(r * std::cos(angle), r * std::sin(angle), z);
-      // The transfer at unit distance is the light's own distribution.
-      Light open = light;
-      open.range = 0;
-      const double strength = static_cast<double>(light_distribution(open, d));
+      const auto [ray, strength] = lamp_ray(light, i);
       if (strength <= 0) continue;
       sum += strength;
-      const Ray ray{light.position, d};
       float distance = 0;
       const Arrival there = arrival(ray, &distance);
       if (there.end == End::kNowhere) continue;
@@ -219,7 +236,7 @@ struct Counter {
       (there.end == End::kLit ? landed : backs) += strength * reach * relative(there.light, light.intensity);
       sum -= strength * (1 - reach);  // glTF's range takes light away
     }
-    const double scale = intensity * 4 * static_cast<double>(kPi) / count;
+    const double scale = intensity * (light.has_area() ? 1 : 4) * static_cast<double>(kPi) / count;
     all = sum * scale;
     landing = landed * scale;
     on_backs = backs * scale;

@@ -148,7 +148,8 @@ Status set_sizes(Scene& scene, const LightOptions& options) {
   if (!(*options.lamp_radius >= 0 && *options.lamp_radius <= 1e6f))
     return usage("the lamps' radius is no length", "give metres, 0 for points");
   for (Light& light : scene.lights)
-    if (light.kind != LightKind::kDirectional) light.radius = *options.lamp_radius;
+    if (light.kind == LightKind::kPoint || light.kind == LightKind::kSpot)
+      light.radius = *options.lamp_radius;
   return Nothing{};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/colour.h"
+#include "math/spherical_triangle.h"
 
 namespace goldthread {
 
@@ -68,6 +69,7 @@ Lamp::View Lamp::view_from(const vec3& origin) const {
 }
 
 float Lamp::share_at(const vec3& origin, const vec3& normal) const {
+  if (light_.has_area()) return area_share_at(origin, normal);
   if (light_.kind == LightKind::kDirectional && !has_size())
     return std::max(0.0f, -dot(light_.direction, normal));
   if (has_size()) {
@@ -84,6 +86,7 @@ float Lamp::share_at(const vec3& origin, const vec3& normal) const {
 // Drawn evenly over the disc as a plane facing it sees it, with density cos / (pi sin^2) to its axis, a disc
 // that brings E to that plane brings E cos_n / cos to one of normal n.
 LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p) const {
+  if (light_.has_area()) return area_light_at(origin, normal, p);
   LightSample light;
   light.shadow.origin = origin;
   const View view = view_from(origin);
@@ -111,6 +114,69 @@ LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p)
   const float half_chord = std::sqrt(std::max(0.0f, view.sine * view.sine - aside * aside));
   light.shadow.direction = way * (view.distance * (along - half_chord));
   light.shadow.far = 0.9999f;
+  return light;
+}
+
+/// As large as a plane's share by the lamp's nearest place can be: were all of it as far in front of the
+/// plane as any of it is.
+float Lamp::area_share_at(const vec3& origin, const vec3& normal) const {
+  const vec3 here = (origin - light_.position) * frame_;  // in the lamp's frame, which shines to -z
+  const vec3 n = normal * frame_, half = vec3(0.5f * light_.size, 0);
+  if (!(here.z < 0)) return 0;
+  const bool disc = light_.kind == LightKind::kDisc;
+  const float rise = disc ? half.x * length(vec2(n)) : dot(half, glm::abs(n));
+  const float height = rise - dot(here, n);
+  if (!(height > 0)) return 0;
+  const vec2 inside = disc ? vec2(here) * std::min(1.0f, half.x / std::max(length(vec2(here)), 1e-30f))
+                           : glm::clamp(vec2(here), -vec2(half), vec2(half));
+  const float nearest = length(here - vec3(inside, 0));
+  // Never more than were the lamp all that is seen.
+  return std::min(1.0f, height / nearest) * (-here.z / nearest) / (nearest * nearest + light_.area() / kPi);
+}
+
+/// Metres from the lamp's centre, evenly drawn.
+vec2 Lamp::place_on(SobolPoint p) const {
+  const vec2 uv(static_cast<float>(unit_double(p.u)), static_cast<float>(unit_double(p.v)));
+  if (light_.kind == LightKind::kRectangle) return (uv - 0.5f) * light_.size;
+  return 0.5f * light_.size.x * std::sqrt(uv.x) * vec2(std::cos(2 * kPi * uv.y), std::sin(2 * kPi * uv.y));
+}
+
+/// Near the lamp an even direction within the square or rectangle around it, with density 1 / its solid angle
+/// (a disc is dark in the corners); farther an even place on it, with density squared distance / (cosine
+/// area).
+LightSample Lamp::area_light_at(const vec3& origin, const vec3& normal, SobolPoint p) const {
+  // Squared distance over squared radius, and steradians above which directions are precise.
+  constexpr float kNear = 16, kLeastSolidAngle = 0.02f;
+  LightSample light;
+  light.shadow.origin = origin;
+  light.shadow.far = 0.9999f;  // it may be fixed to a surface
+  const vec3 middle = light_.position - origin;
+  const float before = -dot(middle, light_.direction);
+  if (!(before > 0)) return light;
+  const vec3 across = 0.5f * light_.size.x * frame_[0], up = 0.5f * light_.size.y * frame_[1];
+  const float reach = light_.reach();
+  if (dot(middle, middle) < kNear * reach * reach) {
+    const std::array<vec3, 4> corners{middle - across - up, middle + across - up, middle + across + up,
+                                      middle - across + up};
+    std::array<vec3, 4> unit;
+    for (size_t i = 0; i < 4; ++i) unit[i] = normalize_or(corners[i], vec3(0));
+    const float all = solid_angle(unit[0], unit[1], unit[2]) + solid_angle(unit[0], unit[2], unit[3]);
+    if (all > kLeastSolidAngle) {
+      const vec3 way = sample_spherical_polygon(corners, static_cast<float>(unit_double(p.u)),
+                                                static_cast<float>(unit_double(p.v)));
+      const float at_lamp = -dot(way, light_.direction);
+      if (!(at_lamp > 0)) return light;
+      light.shadow.direction = way * (before / at_lamp);
+      if (light_.kind == LightKind::kDisc && length(light.shadow.direction - middle) > reach) return light;
+      light.irradiance = light_.intensity * (all * std::max(0.0f, dot(way, normal)) / light_.area());
+      return light;
+    }
+  }
+  const vec2 place = place_on(p);
+  const vec3 d = middle + place.x * frame_[0] + place.y * frame_[1];
+  const float squared = dot(d, d);
+  light.shadow.direction = d;
+  light.irradiance = light_.intensity * (std::max(0.0f, dot(d, normal)) * before / (squared * squared));
   return light;
 }
 

@@ -33,20 +33,23 @@ inline float power_heuristic(float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// A point, spot or directional light, with what its cone needs of sines and cosines worked out. From a place
-/// it is a disc of directions of one luminance, or, without size, one direction.
+/// A lamp, with what its cone needs of sines and cosines worked out. From a place point, spot and directional
+/// lights are discs of directions of one luminance, or, without size, one direction; area lamps are what they
+/// are. No other strategy finds any of them: rays pass through.
 class Lamp {
  public:
   explicit Lamp(const Light& light);
 
   /// Share of the intensity that it brings to a plane of unit `normal` unless something is in between, 1/m2;
   /// of the illuminance, if it is directional. Of a lamp with size more than that: all that it could, were
-  /// its disc as high above the plane as any of it is.
+  /// its disc as high above the plane as any of it is; of an area lamp about that, and 0 only where it brings
+  /// nothing.
   float share_at(const vec3& origin, const vec3& normal) const;
-  /// Light from one direction of the disc, and the way there. `p` counts only for a lamp with size.
+  /// Light from one direction of the disc, or one place of an area lamp, and the way there. `p` counts only
+  /// for a lamp with size.
   LightSample light_at(const vec3& origin, const vec3& normal, SobolPoint p) const;
   float brightness() const { return brightness_; }  ///< luminance of the intensity
-  bool has_size() const { return light_.angular_diameter > 0 || light_.radius > 0; }
+  bool has_size() const { return light_.angular_diameter > 0 || light_.radius > 0 || light_.has_area(); }
 
  private:
   struct View {
@@ -56,6 +59,9 @@ class Lamp {
     float strength = 0;  // share of the intensity on a plane that faces the lamp, 1/m2
   };
   View view_from(const vec3& origin) const;
+  float area_share_at(const vec3& origin, const vec3& normal) const;
+  LightSample area_light_at(const vec3& origin, const vec3& normal, SobolPoint p) const;
+  vec2 place_on(SobolPoint p) const;
   float cone(const vec3& d) const;
   float reach(float distance) const;
 
@@ -81,7 +87,7 @@ class LightSampler {
   /// One direction to the sky: of a uniform one by the cosine, which alone is worth following; else by
   /// luminance.
   LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  /// One point, spot or directional light, drawn by what it would bring were nothing in between, and of one
+  /// One lamp, drawn by what it would bring were nothing in between, and of one
   /// with size a direction. `sums` is room to work in, lamp_count() long.
   LightSample sample_lamp(const vec3& origin, const vec3& normal, double u, SobolPoint p,
                           std::span<float> sums) const;

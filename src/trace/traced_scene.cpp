@@ -116,6 +116,10 @@ void add_light(Fingerprint& print, const Light& light) {
   print.add(light.direction);
   print.add(vec3(light.inner_cone, light.outer_cone, light.range));
   print.add(vec2(light.angular_diameter, light.radius));
+  if (light.has_area()) {
+    print.add(light.size);
+    print.add(light.across);
+  }
   if (!light.profile) return;
   print.add(light.across);
   print.add(light.profile->pole);

@@ -9,6 +9,7 @@
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/written_gltf.h"
+#include "scene/area_lamps.h"
 #include "scene/small_profiles.h"
 #include "scene/small_scenes.h"
 
@@ -110,6 +111,29 @@ TEST(GltfBuild, LightProfilesComeBack) {
     EXPECT_LT(length(after.lights[0].across - light.across), 1e-5f);
     for (const vec3& d : {vec3(0, 0, -1), vec3(0.6f, 0, -0.8f), vec3(-0.48f, 0.64f, -0.6f)})
       EXPECT_NEAR(after.lights[0].profile->intensity(d), light.profile->intensity(d), 1e-4f);
+  }
+}
+
+TEST(GltfBuild, AreaLampsComeBack) {
+  const TempFolder folder;
+  Scene before = small_scene();
+  before.lights = {test::rectangle_lamp(300, {2, 0.5f}, vec3(1, 2, 3), vec3(0.6f, -0.8f, 0), vec3(0, 0, 1)),
+                   test::disc_lamp(50, 0.4f, vec3(4, 5, 6), vec3(0, 1, 0))};
+  before.lights[0].name = "panel";
+  before.lights[0].intensity *= vec3(1, 0.5f, 0.25f);
+  ASSERT_TRUE(write_scene(folder.path("a.glb"), before));
+  const Scene after = read(folder.path("a.glb"));
+  EXPECT_TRUE(after.warnings.empty());
+  ASSERT_EQ(after.lights.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    const Light &a = after.lights[i], &b = before.lights[i];
+    EXPECT_EQ(a.kind, b.kind);
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_LT(length(a.size - b.size), 1e-6f);
+    EXPECT_LT(length(a.intensity - b.intensity), 1e-3f);
+    EXPECT_LT(length(a.position - b.position), 1e-5f);
+    EXPECT_LT(length(a.direction - b.direction), 1e-5f);
+    EXPECT_LT(length(a.across - b.across), 1e-5f);
   }
 }
 

@@ -77,13 +77,92 @@ TEST(GltfLights, ASunsDiameterComesFromTheExtrasInDegrees) {
   EXPECT_EQ(diameter("point", 1), 0);
 }
 
-TEST(GltfLights, AreaLightsAreNamedAndLeftOut) {
-  GltfBuilder b = with_light({{"type", "point"}}, {});
-  b.doc["extensions"]["EXT_lights_area"]["lights"] = {{{"type", "disk"}}};
-  b.push("nodes", {{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
-  const Scene scene = read_built(b);
-  EXPECT_EQ(scene.lights.size(), 1u);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("1 area lights (EXT_lights_area) are left out")));
+/// A file with one area light on one node.
+GltfBuilder with_area_light(const json& light, json node = json::object()) {
+  GltfBuilder b;
+  b.doc["extensionsUsed"] = {"EXT_lights_area"};
+  b.doc["extensionsRequired"] = {"EXT_lights_area"};
+  b.doc["extensions"] = {{"EXT_lights_area", {{"lights", {light}}}}};
+  node["extensions"] = {{"EXT_lights_area", {{"light", 0}}}};
+  b.push("nodes", node);
+  return b;
+}
+
+TEST(GltfAreaLights, ARectangleHasHeightAndAspectAndNits) {
+  const Scene scene =
+      read_built(with_area_light({{"type", "rect"},
+                                  {"name", "panel"},
+                                  {"color", {1, 0.5, 0}},
+                                  {"intensity", 400},
+                                  {"size", 0.5},
+                                  {"rect", {{"aspect", 3}}}},
+                                 {{"translation", {1, 2, 3}}, {"rotation", {-kHalf, 0, 0, kHalf}}}));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.lights.size(), 1u);
+  const Light& light = scene.lights[0];
+  EXPECT_EQ(light.kind, LightKind::kRectangle);
+  EXPECT_EQ(light.name, "panel");
+  EXPECT_EQ(light.size, vec2(1.5f, 0.5f));
+  EXPECT_FLOAT_EQ(light.area(), 0.75f);
+  EXPECT_THAT(light.intensity, Near(vec3(300, 150, 0)));  // candela straight ahead
+  EXPECT_THAT(light.position, Near(vec3(1, 2, 3)));
+  EXPECT_THAT(light.direction, Near(vec3(0, -1, 0)));
+  EXPECT_THAT(light.across, Near(vec3(1, 0, 0)));
+}
+
+TEST(GltfAreaLights, WhatIsAbsentIsTheDraftsDefault) {
+  const Light light = read_built(with_area_light({{"type", "disk"}}, {{"name", "node"}})).lights.at(0);
+  EXPECT_EQ(light.kind, LightKind::kDisc);
+  EXPECT_EQ(light.size, vec2(1));
+  EXPECT_EQ(light.name, "node");
+  EXPECT_NEAR(light.intensity.x, 1000 * kPi / 4, 1e-3f);
+  EXPECT_EQ(read_built(with_area_light({{"type", "rect"}, {"size", 2}})).lights.at(0).size, vec2(2));
+}
+
+TEST(GltfAreaLights, TheLargestScaleIsAllOfThem) {
+  GltfBuilder b =
+      with_area_light({{"type", "rect"}, {"size", 2}, {"rect", {{"aspect", 0.5}}}}, {{"scale", {1, -3, 2}}});
+  b.push("nodes", {{"children", {0}}, {"scale", {2, 2, 2}}});
+  const Light light = read_built(b).lights.at(0);
+  EXPECT_EQ(light.size, vec2(6, 12));
+  EXPECT_NEAR(light.intensity.x, 1000 * 72, 1);  // luminance stays
+}
+
+TEST(GltfAreaLights, TheFirstDraftsWordsAreUnderstood) {
+  EXPECT_EQ(read_built(with_area_light({{"shape", "rect"}, {"width", 2}, {"height", 0.5}})).lights.at(0).size,
+            vec2(2, 0.5f));
+  const Light disc = read_built(with_area_light({{"shape", "disk"}, {"radius", 0.3}})).lights.at(0);
+  EXPECT_EQ(disc.kind, LightKind::kDisc);
+  EXPECT_FLOAT_EQ(disc.size.x, 0.6f);
+}
+
+TEST(GltfAreaLights, WhatCannotBeIsNamed) {
+  const auto warnings_of = [](const json& light, json node = json::object()) {
+    return read_built(with_area_light(light, node)).warnings;
+  };
+  EXPECT_THAT(warnings_of({{"type", "rect"}, {"name", "panel"}, {"size", -2}}),
+              ElementsAre(HasSubstr("area light 0 \"panel\": a size of -2 x -2 m")));
+  EXPECT_THAT(warnings_of({{"type", "rect"}, {"rect", {{"aspect", 0}}}}), ElementsAre(HasSubstr("0 x 1 m")));
+  EXPECT_THAT(warnings_of({{"type", "disk"}, {"size", "large"}}), ElementsAre(HasSubstr("nan x nan m")));
+  EXPECT_THAT(warnings_of({{"type", "disk"}}, {{"scale", {0, 0, 0}}}),
+              ElementsAre(HasSubstr("0 times that on node 0")));
+  EXPECT_THAT(warnings_of({{"type", "tube"}}), ElementsAre(HasSubstr("kind \"tube\" is unknown; left out")));
+  const Scene dark = read_built(with_area_light({{"type", "disk"}, {"intensity", -5}}));
+  EXPECT_EQ(dark.lights.at(0).intensity, vec3(0));
+  EXPECT_THAT(dark.warnings, ElementsAre(HasSubstr("area light 0: an intensity of -5 nits is no light")));
+  GltfBuilder b = with_area_light({{"type", "disk"}});
+  b.doc["nodes"][0]["extensions"]["EXT_lights_area"]["light"] = 4;
+  const TempFolder folder;
+  const Result<Scene> scene = read_scene(folder.write("a.gltf", b.text()));
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().line(), HasSubstr("node 0: there is no area light 4"));
+}
+
+TEST(GltfAreaLights, ANodeMayHaveAPunctualLightBeside) {
+  GltfBuilder b = with_area_light({{"type", "disk"}});
+  b.doc["extensions"]["KHR_lights_punctual"] = {{"lights", {{{"type", "point"}}}}};
+  b.doc["nodes"][0]["extensions"]["KHR_lights_punctual"] = {{"light", 0}};
+  EXPECT_EQ(read_built(b).lights.size(), 2u);
 }
 
 TEST(GltfLights, SpotShinesAlongMinusZTurned) {

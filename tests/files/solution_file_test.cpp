@@ -129,6 +129,28 @@ TEST(SolutionFile, ComesBackWhole) {
   EXPECT_EQ(content(file), content(folder.path("b.gold")));
 }
 
+TEST(SolutionFile, AreaLampsComeBackAndNeedAnArea) {
+  const TempFolder folder;
+  const std::string file = folder.path("a.gold");
+  Solution before = full_solution();
+  before.scene.lights[1].kind = LightKind::kRectangle;
+  before.scene.lights[1].size = vec2(2, 0.5f);
+  before.scene.lights[2].kind = LightKind::kDisc;
+  before.scene.lights[2].size = vec2(0.25f);
+  ASSERT_TRUE(write_solution(file, before));
+  const Result<Solution> after = read_solution(file);
+  ASSERT_TRUE(after) << after.error().line();
+  EXPECT_EQ(after->scene.lights[1].kind, LightKind::kRectangle);
+  EXPECT_EQ(after->scene.lights[1].size, vec2(2, 0.5f));
+  EXPECT_EQ(after->scene.lights[2].size, vec2(0.25f));
+  ASSERT_TRUE(write_solution(folder.path("b.gold"), *after));
+  EXPECT_EQ(content(file), content(folder.path("b.gold")));
+  run_sql(file, "DELETE FROM sections WHERE name='lamp_sizes'");
+  const Result<Solution> cut = read_solution(file);
+  ASSERT_FALSE(cut);
+  EXPECT_NE(cut.error().line().find("light 1 is without an area"), std::string::npos) << cut.error().line();
+}
+
 TEST(SolutionFile, LongSectionsComeInParts) {
   const TempFolder folder;
   Solution before = full_solution();

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "math/far_form_factor.h"
+#include "solve/hierarchical/area_lamp.h"
 
 namespace goldthread {
 namespace {
@@ -203,6 +204,7 @@ vec3 towards_disc(const LightDisc& disc, const vec3& n, float irradiance) {
 }
 
 vec3 point_light_transfer(const Light& light, const vec3& x, const vec3& n) {
+  if (light.has_area()) return area_lamp_transfer(light, x, n);
   const vec3 d = light.position - x;
   const float squared = dot(d, d);
   const float distance = std::sqrt(squared);

@@ -45,7 +45,7 @@ constexpr float kLampTolerance = 2e-5f;
 /// slower than the transfer.
 double point_transfer_error_bound(const ElementPool& pool, ElementId source, const vec3& x, const vec3& n);
 
-/// A lamp's or the sun's disc as a point sees it.
+/// A ball's or the sun's disc as a point sees it; of lamps without size and of area lamps only the way.
 struct LightDisc {
   vec3 axis{0};        ///< unit, to its middle
   float distance = 0;  ///< metres; 0 for the sun

@@ -49,7 +49,9 @@ double likely_factor(const ElementPool& pool, const Link& link) {
       most = 1;
       break;
     case ElementKind::kPoint:
-      most = 1 / std::max(squared, static_cast<double>(r.radius * r.radius));
+      // An area lamp brings no more than were it all that is seen: pi F / area, with F at most 1.
+      most = 1 / std::max({squared, static_cast<double>(r.radius * r.radius),
+                           static_cast<double>(pool.light(link.source).area() / kPi)});
       break;
     case ElementKind::kSky: {
       most = static_cast<double>(pool.sky_cell(link.source).solid_angle / kPi);

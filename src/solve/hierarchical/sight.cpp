@@ -40,7 +40,13 @@ Outline outline_of_light(const ElementPool& pool, const Visibility& visibility, 
   const Element& e = pool[id];
   Outline out;
   const float far = 2 * visibility.extent;
-  if (e.kind == ElementKind::kPoint) {
+  if (e.kind == ElementKind::kPoint && pool.light(id).has_area()) {
+    const Light& light = pool.light(id);
+    const vec3 across = 0.5f * light.size.x * light.across;
+    const vec3 up = 0.5f * light.size.y * cross(light.direction, light.across);
+    for (const vec3& p : {-across - up, across - up, across + up, up - across}) out.add(e.centre + p);
+    out.normal = light.direction;
+  } else if (e.kind == ElementKind::kPoint) {
     const float r = pool.light(id).radius;
     if (r <= 0) {
       out.add(e.centre);
@@ -65,7 +71,7 @@ bool is_clear(const ElementPool& pool, const Visibility& visibility, const Outli
   if (to.count == 0) return false;
   Shaft shaft(receiver.span(), to.span(), visibility.epsilon);
   shaft.add_cap(receiver.corners[0], receiver.normal);
-  if (surface) shaft.add_cap(to.corners[0], to.normal);
+  if (to.normal != vec3(0)) shaft.add_cap(to.corners[0], to.normal);
   return visibility.caster->is_clear(shaft);
 }
 

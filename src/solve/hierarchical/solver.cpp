@@ -148,7 +148,8 @@ vec3 emitted_power(const ElementPool& pool) {
       power += e.exitance * (d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y);
     } else {
       const Light& light = pool.light(id);
-      const float solid_angle = light.profile ? static_cast<float>(light.profile->luminous_flux())
+      const float solid_angle = light.profile      ? static_cast<float>(light.profile->luminous_flux())
+                                : light.has_area() ? kPi  // by the cosine
                                 : light.kind == LightKind::kPoint
                                     ? 4 * kPi
                                     : 2 * kPi * (1 - std::cos(light.outer_cone));

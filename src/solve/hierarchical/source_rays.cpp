@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "math/form_factor.h"
 #include "math/spherical_triangle.h"
+#include "solve/hierarchical/area_lamp.h"
 #include "solve/hierarchical/point_transfer.h"
 
 namespace goldthread {
@@ -116,6 +117,37 @@ struct SourceSampler {
 
 constexpr uint32_t kPacket = 16, kLooked = 8;
 
+// Rays to places of one lamp, each with what it would bring.
+struct LampPacket {
+  std::array<Ray, kPacket> rays;
+  std::array<float, kPacket> weight;
+  uint32_t size = 0;
+
+  void add(const Ray& ray, float brings) {
+    rays[size] = ray;
+    weight[size++] = brings;
+  }
+
+  // Share of the light that gets through; 0 of none.
+  float cast(const RayCaster& caster, RayCount& count, vec3* tint) const {
+    if (size == 0) return 0;
+    std::array<float, kPacket> passing;
+    std::array<vec3, kPacket> colour;
+    timed_packet(caster, {rays.data(), size}, {passing.data(), size}, {colour.data(), size}, count);
+    float all = 0, seen = 0;
+    for (uint32_t k = 0; k < size; ++k) {
+      all += weight[k];
+      seen += weight[k] * passing[k];
+    }
+    if (tint != nullptr && caster.is_coloured()) {
+      vec3 by_channel(0);
+      for (uint32_t k = 0; k < size; ++k) by_channel += weight[k] * colour[k];
+      *tint = tint_of(by_channel, seen);
+    }
+    return seen / all;
+  }
+};
+
 // Share of a light's disc seen from `origin`, by a packet of rays spread evenly over it; of what is above the
 // horizon.
 float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& origin, const vec3& n,
@@ -123,35 +155,39 @@ float disc_fraction(const RayCaster& caster, const LightDisc& disc, const vec3& 
   const vec3 across = normalize(std::abs(disc.axis.x) > 0.6f ? vec3(disc.axis.y, -disc.axis.x, 0)
                                                              : vec3(0, disc.axis.z, -disc.axis.y));
   const vec3 up = cross(disc.axis, across);
-  std::array<Ray, kPacket> rays;
-  std::array<float, kPacket> weight, passing;
-  std::array<vec3, kPacket> colour;
-  uint32_t size = 0;
-  float all = 0, seen = 0;
+  LampPacket packet;
   for (uint32_t i = 0; i < kPacket; ++i) {
     const UnitSquarePoint uv = r2_point(i, turn);
     const float aside = disc.sine * std::sqrt(uv.u), along = std::sqrt(1 - aside * aside);
     const vec3 way =
         along * disc.axis + aside * (std::cos(2 * kPi * uv.v) * across + std::sin(2 * kPi * uv.v) * up);
-    weight[size] = dot(way, n) / along;
-    if (!(weight[size] > 0)) continue;
-    rays[size] = {origin, way};
+    const float weight = dot(way, n) / along;
+    if (!(weight > 0)) continue;
+    Ray ray{origin, way};
     if (disc.distance > 0) {  // to where it meets the ball
-      rays[size].direction *=
+      ray.direction *=
           disc.distance * (along - std::sqrt(std::max(0.0f, disc.sine * disc.sine - aside * aside)));
-      rays[size].far = 0.9999f;
+      ray.far = 0.9999f;
     }
-    all += weight[size++];
+    packet.add(ray, weight);
   }
-  if (size == 0) return 0;
-  timed_packet(caster, {rays.data(), size}, {passing.data(), size}, {colour.data(), size}, count);
-  for (uint32_t k = 0; k < size; ++k) seen += weight[k] * passing[k];
-  if (tint != nullptr && caster.is_coloured()) {
-    vec3 by_channel(0);
-    for (uint32_t k = 0; k < size; ++k) by_channel += weight[k] * colour[k];
-    *tint = tint_of(by_channel, seen);
+  return packet.cast(caster, count, tint);
+}
+
+// The same of an area lamp.
+float area_lamp_fraction(const RayCaster& caster, const Light& light, const vec3& origin, const vec3& n,
+                         uint32_t turn, RayCount& count, vec3* tint) {
+  const AreaLampView view(light, origin, n);
+  if (view.empty()) return 0;
+  LampPacket packet;
+  for (uint32_t i = 0; i < kPacket; ++i) {
+    const UnitSquarePoint uv = r2_point(i, turn);
+    float weight = 0;
+    Ray ray{origin, view.way(uv.u, uv.v, weight)};
+    ray.far = 0.9999f;  // it may be fixed to a surface
+    if (weight > 0) packet.add(ray, weight);
   }
-  return seen / all;
+  return packet.cast(caster, count, tint);
 }
 
 }  // namespace
@@ -224,8 +260,11 @@ float Visibility::fraction(const ElementPool& pool, ElementId source, const vec3
   const Element& e = pool[source];
   const vec3 origin = x + epsilon * n;
   if (e.kind == ElementKind::kPoint || e.kind == ElementKind::kSun) {
-    const LightDisc disc = light_disc(pool.light(source), x);
-    if (disc.sine > 0) return disc_fraction(*caster, disc, origin, n, hash(turn ^ seed, source), count, tint);
+    const Light& light = pool.light(source);
+    const uint32_t turned = hash(turn ^ seed, source);
+    if (light.has_area()) return area_lamp_fraction(*caster, light, origin, n, turned, count, tint);
+    const LightDisc disc = light_disc(light, x);
+    if (disc.sine > 0) return disc_fraction(*caster, disc, origin, n, turned, count, tint);
     Ray ray{origin, -pool.light(source).direction};
     if (e.kind == ElementKind::kPoint) {
       ray.direction = e.centre - origin;

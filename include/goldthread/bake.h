@@ -26,7 +26,7 @@ struct BakeOptions : LightOptions {
       outputs;  ///< by extension: .glb .gltf (scene), .gold (solution), .png .exr (preview)
   /// Where to tell the light besides, as the reference does: JSON, a list of {"point": [x, y, z],
   /// "normal": [x, y, z]}, metres, on surfaces of the scene. It is gathered at each place, not interpolated
-  /// between vertices.
+  /// between vertices, on the given plane as the surface's normal map bends it.
   std::string points_file;
   std::string json_file;  ///< the light at the points, lux; empty for none, "-" for standard output
   OutputMode mode = OutputMode::kVertexLight;

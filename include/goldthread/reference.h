@@ -16,13 +16,16 @@ namespace goldthread {
 struct ReferenceOptions : LightOptions {
   std::string input;  ///< scene, as in BakeOptions
 
-  std::string points_file;     ///< JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres
+  /// JSON: [{"point": [x, y, z], "normal": [x, y, z]}, ...], metres. Where the surface has a normal map, that
+  /// bends the normal; the results have the bent one. Random points and vertices are not bent.
+  std::string points_file;
   uint64_t random_points = 0;  ///< spread over all lit sides by area
   bool vertices = false;       ///< all vertices of all instances
 
   /// The texels of a light map for each lit primitive of each instance, laid out by its texture coordinates:
   /// irradiance where a texel's centre, u = (x + 1/2) / width and v = (y + 1/2) / height, falls on a
-  /// triangle, by the file's interpolated normal, or the flat face's where the file has none. Two-sided
+  /// triangle, by the file's interpolated normal, or the flat face's where the file has none, bent by the
+  /// normal map if there is one. Two-sided
   /// primitives have a map a side. Texels that no triangle covers have no value; of overlapping triangles
   /// the first in the file has the texel. That, primitives without coordinates, and triangles beyond 0..1 or
   /// without area there, are counted in warnings; ErrorCode::kBadInput where no texel is left.

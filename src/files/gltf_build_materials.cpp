@@ -140,6 +140,10 @@ Json build_material(const Material& material, TextureTable& textures, GltfDocume
   if (!material.name.empty()) json["name"] = material.name;
   json["pbrMetallicRoughness"] = surface_of(material, textures);
   add_emission(json, material, textures, document);
+  if (material.normal_texture.present()) {
+    json["normalTexture"] = textures.info(material.normal_texture);
+    if (material.normal_scale != 1) json["normalTexture"]["scale"] = shortest(material.normal_scale);
+  }
   add_glass(json, material, textures, document);
   add_translucence(json, material, textures, document);
   if (material.alpha_mode == AlphaMode::kBlend) json["alphaMode"] = "BLEND";

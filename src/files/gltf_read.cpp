@@ -154,7 +154,7 @@ class InstanceReader {
   std::map<std::pair<int, std::vector<double>>, uint32_t> shared_;  ///< mesh and weights -> Scene::meshes
 };
 
-Result<Scene> read(const std::string& file) {
+Result<Scene> read(const std::string& file, NormalTextures normals) {
   const Result<tinygltf::Model> model = load_gltf_model(file);
   if (!model) return model.error();
   Scene scene;
@@ -162,7 +162,7 @@ Result<Scene> read(const std::string& file) {
   for (const std::string& name : model->extensionsRequired)
     if (!is_known_extension(name))
       scene.warnings.push_back(fmt::format("the file requires {}, which is unknown; read without it", name));
-  if (Status status = read_gltf_materials(*model, file, scene); !status) return status.error();
+  if (Status status = read_gltf_materials(*model, file, normals, scene); !status) return status.error();
   const Result<NodePlacements> nodes = place_nodes(*model, file);
   if (!nodes) return nodes.error();
   InstanceReader instances(*model, file, *nodes, scene);
@@ -177,9 +177,9 @@ Result<Scene> read(const std::string& file) {
 
 }  // namespace
 
-Result<Scene> read_gltf(const std::string& file) {
+Result<Scene> read_gltf(const std::string& file, NormalTextures normals) {
   try {
-    return read(file);
+    return read(file, normals);
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::kLimit, "out of memory while reading", file, "", "close other programs"};
   } catch (const std::exception& problem) {

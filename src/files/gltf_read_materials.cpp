@@ -44,8 +44,8 @@ TextureUse texture_use(const tinygltf::Value* info) {
 
 class MaterialReader {
  public:
-  MaterialReader(const tinygltf::Model& model, const std::string& file, Scene& scene)
-      : model_(model), file_(file), scene_(scene) {}
+  MaterialReader(const tinygltf::Model& model, const std::string& file, NormalTextures normals, Scene& scene)
+      : model_(model), file_(file), normals_(normals), scene_(scene) {}
 
   Status read(size_t index) {
     const tinygltf::Material& source = model_.materials[index];
@@ -77,6 +77,8 @@ class MaterialReader {
           !status)
         return status;
     }
+    if (normals_ == NormalTextures::kRead)
+      if (Status status = read_normals(source, material); !status) return status;
     if (material.emits())
       if (Status status = place_texture(emission, material.emission_texture); !status) return status;
     scene_.materials.push_back(std::move(material));
@@ -100,6 +102,21 @@ class MaterialReader {
       scene_.warnings.push_back(fmt::format("{}: {} is not within 0 to 1; taken as [{}, {}, {}]", place_, key,
                                             kept.x, kept.y, kept.z));
     return kept;
+  }
+
+  Status read_normals(const tinygltf::Material& source, Material& material) {
+    const tinygltf::NormalTextureInfo& info = source.normalTexture;
+    material.normal_scale = float(info.scale);
+    if (!std::isfinite(material.normal_scale)) {
+      scene_.warnings.push_back(
+          fmt::format("{}: a normalTexture scale of {} is no number; taken as 1", place_, info.scale));
+      material.normal_scale = 1;
+    }
+    // What is unlit receives no light, and what is scaled to nothing is flat.
+    if (info.index == -1 || material.unlit || material.normal_scale == 0) return Nothing{};
+    return place_texture(
+        {info.index, info.texCoord, find_extension(info.extensions, "KHR_texture_transform")},
+        material.normal_texture);
   }
 
   TextureUse read_transmission(const tinygltf::Material& source, Material& material) {
@@ -240,6 +257,7 @@ class MaterialReader {
 
   const tinygltf::Model& model_;
   const std::string& file_;
+  NormalTextures normals_;
   Scene& scene_;
   std::string place_;
   std::map<size_t, int32_t> images_;  ///< the file's image -> Scene::images
@@ -247,8 +265,9 @@ class MaterialReader {
 
 }  // namespace
 
-Status read_gltf_materials(const tinygltf::Model& model, const std::string& file, Scene& scene) {
-  MaterialReader reader(model, file, scene);
+Status read_gltf_materials(const tinygltf::Model& model, const std::string& file, NormalTextures normals,
+                           Scene& scene) {
+  MaterialReader reader(model, file, normals, scene);
   for (size_t i = 0; i < model.materials.size(); ++i)
     if (Status status = reader.read(i); !status) return status;
   return Nothing{};

@@ -33,12 +33,13 @@ class PrimitiveReader {
     if (source_.mode < TINYGLTF_MODE_TRIANGLES) return skip("points or lines; left out");
     const int position = attribute("POSITION");
     if (position == -1) return skip("has no positions; left out");
-    for (const auto& step :
-         {&PrimitiveReader::read_positions, &PrimitiveReader::read_indices, &PrimitiveReader::read_attributes,
-          &PrimitiveReader::read_colours, &PrimitiveReader::apply_morph_targets, &PrimitiveReader::apply_skin,
-          &PrimitiveReader::assign_material})
+    for (const auto& step : {&PrimitiveReader::read_positions, &PrimitiveReader::read_indices,
+                             &PrimitiveReader::read_attributes, &PrimitiveReader::read_tangents,
+                             &PrimitiveReader::read_colours, &PrimitiveReader::apply_morph_targets,
+                             &PrimitiveReader::apply_skin, &PrimitiveReader::assign_material})
       if (Status status = (this->*step)(out); !status) return status.error();
     settle_normals(out.normals);
+    settle_tangents(out);
     return true;
   }
 
@@ -65,6 +66,23 @@ class PrimitiveReader {
     }
     if (none > 0) warn(fmt::format("{} of {} normals have no direction; flat there", none, normals.size()));
     if (none == normals.size()) normals.clear();
+  }
+
+  /// Makes tangents unit vectors. Where one has no direction, or there are no normals that they belong to,
+  /// they are left out: whoever needs them takes the texture coordinates'.
+  void settle_tangents(Primitive& out) {
+    std::vector<vec4>& tangents = out.tangents;
+    if (tangents.empty()) return;
+    size_t none = 0;
+    for (vec4& tangent : tangents) {
+      const vec3 along = is_finite(vec3(tangent)) ? normalize_or(vec3(tangent), vec3(0)) : vec3(0);
+      if (along == vec3(0)) ++none;
+      tangent = vec4(along, tangent.w < 0 ? -1.0f : 1.0f);
+    }
+    if (none > 0)
+      warn(fmt::format("{} of {} tangents have no direction; taken from the texture coordinates", none,
+                       tangents.size()));
+    if (none > 0 || out.normals.empty()) tangents.clear();
   }
 
   /// Whether an attribute has an element for each vertex. Those that do not are left out: positions are
@@ -131,6 +149,20 @@ class PrimitiveReader {
     return Nothing{};
   }
 
+  bool has_normal_texture() const {
+    return source_.material != -1 && size_t(source_.material) < reader_.model().materials.size() &&
+           scene_.materials[size_t(source_.material)].normal_texture.present();
+  }
+
+  /// Tangents, of those that need them.
+  Status read_tangents(Primitive& out) {
+    if (attribute("TANGENT") == -1 || !has_normal_texture()) return Nothing{};
+    Result<std::vector<vec4>> tangents = reader_.vec4s(attribute("TANGENT"), false);
+    if (!tangents) return tangents.error();
+    if (complete("TANGENT", tangents->size(), out.positions.size())) out.tangents = *std::move(tangents);
+    return Nothing{};
+  }
+
   Status read_colours(Primitive& out) {
     const int accessor = attribute("COLOR_0");
     if (accessor == -1) return Nothing{};
@@ -173,7 +205,16 @@ class PrimitiveReader {
         return status;
       if (Status status = add_target(source_.targets[t], "NORMAL", weight, out.normals); !status)
         return status;
+      if (Status status = move_tangents(source_.targets[t], weight, out.tangents); !status) return status;
     }
+    return Nothing{};
+  }
+
+  /// A target moves where tangents point; which side the bitangent is on stays.
+  Status move_tangents(const std::map<std::string, int>& target, float weight, std::vector<vec4>& tangents) {
+    std::vector<vec3> along(tangents.begin(), tangents.end());
+    if (Status status = add_target(target, "TANGENT", weight, along); !status) return status;
+    for (size_t i = 0; i < along.size(); ++i) tangents[i] = vec4(along[i], tangents[i].w);
     return Nothing{};
   }
 
@@ -223,6 +264,8 @@ class PrimitiveReader {
                          fmt::format("vertex {} names a joint that its skin lacks", v), kExportAgain);
       out.positions[v] = vec3(*matrix * vec4(out.positions[v], 1));
       if (!out.normals.empty()) out.normals[v] = area_vector_transform(mat3(*matrix)) * out.normals[v];
+      if (!out.tangents.empty())
+        out.tangents[v] = vec4(mat3(*matrix) * vec3(out.tangents[v]), out.tangents[v].w);
     }
     return Nothing{};
   }

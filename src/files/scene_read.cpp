@@ -25,14 +25,14 @@ bool starts_like_glb(const std::string& file) {
   return stream && std::memcmp(magic, "glTF", 4) == 0;
 }
 
-Result<Scene> read_any(const std::string& file) {
+Result<Scene> read_any(const std::string& file, NormalTextures normals) {
   std::error_code ignored;
   const auto kind = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(kind))
     return bad_input(file, "", "cannot open: no such file", "check the path");
   const std::string extension = file_extension(file);
-  if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
-  if (std::filesystem::is_regular_file(kind) && starts_like_glb(file)) return read_gltf(file);
+  if (extension == ".gltf" || extension == ".glb") return read_gltf(file, normals);
+  if (std::filesystem::is_regular_file(kind) && starts_like_glb(file)) return read_gltf(file, normals);
   for (const char* known : {".obj", ".ply", ".stl", ".fbx", ".dae"})
     if (extension == known) return read_mesh_file(file);
   return bad_input(file, "", fmt::format("the extension \"{}\" is not supported", extension),
@@ -41,8 +41,8 @@ Result<Scene> read_any(const std::string& file) {
 
 }  // namespace
 
-Result<Scene> read_scene(const std::string& file) {
-  Result<Scene> scene = read_any(file);
+Result<Scene> read_scene(const std::string& file, NormalTextures normals) {
+  Result<Scene> scene = read_any(file, normals);
   if (scene) put_out_absurd_lights(*scene);
   return scene;
 }

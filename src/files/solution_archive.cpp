@@ -232,6 +232,17 @@ struct StoredPassage {
   Texture diffuse_transmission_colour_texture;
 };
 
+// How a material's normals are bent.
+struct StoredNormalMap {
+  Texture texture;
+  float scale = 1;
+};
+
+struct StoredNormalMaps {
+  std::vector<StoredNormalMap> materials;
+  std::vector<std::vector<vec4>> tangents;  ///< by mesh and primitive, one after another
+};
+
 template <typename V, typename T>
 concept Is = std::same_as<std::remove_const_t<V>, T>;
 
@@ -249,6 +260,14 @@ template <typename A, Is<StoredPassage> V>
 void fields(A& a, V& v) {
   a(v.transmission, v.transmission_texture, v.volume_tint, v.diffuse_transmission,
     v.diffuse_transmission_texture, v.diffuse_transmission_colour, v.diffuse_transmission_colour_texture);
+}
+template <typename A, Is<StoredNormalMap> V>
+void fields(A& a, V& v) {
+  a(v.texture, v.scale);
+}
+template <typename A, Is<StoredNormalMaps> V>
+void fields(A& a, V& v) {
+  a(v.materials, v.tangents);
 }
 template <typename A, Is<Image> V>
 void fields(A& a, V& v) {
@@ -375,6 +394,35 @@ bool visit_lamp_sizes(Unpacker& a, std::vector<Light>& lights) {
   return true;
 }
 
+bool visit_normal_maps(Packer& a, const Scene& scene) {
+  StoredNormalMaps maps;
+  bool any = false;
+  for (const Material& m : scene.materials) {
+    maps.materials.push_back({m.normal_texture, m.normal_scale});
+    any |= m.normal_texture.present();
+  }
+  for (const Mesh& mesh : scene.meshes)
+    for (const Primitive& primitive : mesh.primitives) maps.tangents.push_back(primitive.tangents);
+  if (any) a(maps);
+  return true;
+}
+bool visit_normal_maps(Unpacker& a, Scene& scene) {
+  StoredNormalMaps maps;
+  a(maps);
+  size_t primitives = 0;
+  for (const Mesh& mesh : scene.meshes) primitives += mesh.primitives.size();
+  if (!a.finished() || maps.materials.size() != scene.materials.size() || maps.tangents.size() != primitives)
+    return false;
+  for (size_t i = 0; i < maps.materials.size(); ++i) {
+    scene.materials[i].normal_texture = maps.materials[i].texture;
+    scene.materials[i].normal_scale = maps.materials[i].scale;
+  }
+  auto tangents = maps.tangents.begin();
+  for (Mesh& mesh : scene.meshes)
+    for (Primitive& primitive : mesh.primitives) primitive.tangents = std::move(*tangents++);
+  return true;
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
@@ -388,6 +436,7 @@ bool visit_section(A& a, V& solution, const std::string& name) {
   if (name == "instances") return a(scene.instances), true;
   if (name == "lights") return visit_lights(a, scene.lights);
   if (name == "lamp_sizes") return visit_lamp_sizes(a, scene.lights);
+  if (name == "normal_maps") return visit_normal_maps(a, scene);
   if (name == "cameras") return a(scene.cameras), true;
   if (name == "lighting") return a(solution.lighting.revision, solution.lighting.primitives), true;
   return false;
@@ -396,12 +445,12 @@ bool visit_section(A& a, V& solution, const std::string& name) {
 }  // namespace
 
 std::vector<std::string> section_names() {
-  return {"report",    "scene",  "sky",     "images",   "materials", "meshes",
-          "instances", "lights", "cameras", "lighting", "passages",  "lamp_sizes"};
+  return {"report", "scene",   "sky",      "images",   "materials",  "meshes",     "instances",
+          "lights", "cameras", "lighting", "passages", "lamp_sizes", "normal_maps"};
 }
 
 bool is_optional_section(const std::string& name) {
-  return name == "passages" || name == "lamp_sizes";
+  return name == "passages" || name == "lamp_sizes" || name == "normal_maps";
 }
 
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {

@@ -21,7 +21,7 @@ std::string check_material(const Material& material, const Scene& scene) {
   for (const Texture* texture :
        {&material.base_colour_texture, &material.metallic_texture, &material.emission_texture,
         &material.transmission_texture, &material.diffuse_transmission_texture,
-        &material.diffuse_transmission_colour_texture})
+        &material.diffuse_transmission_colour_texture, &material.normal_texture})
     if (std::string problem = check_texture(*texture, scene); !problem.empty()) return problem;
   return material.alpha_mode > AlphaMode::kBlend ? "an unknown alpha mode" : "";
 }
@@ -29,7 +29,7 @@ std::string check_material(const Material& material, const Scene& scene) {
 std::string check_primitive(const Primitive& primitive, const Scene& scene) {
   const size_t vertices = primitive.positions.size();
   for (size_t size : {primitive.normals.size(), primitive.texcoords[0].size(), primitive.texcoords[1].size(),
-                      primitive.colours.size()})
+                      primitive.colours.size(), primitive.tangents.size()})
     if (size != 0 && size != vertices) return "attributes of different lengths";
   if (primitive.indices.size() % 3 != 0) return "an incomplete triangle";
   if (std::any_of(primitive.indices.begin(), primitive.indices.end(),

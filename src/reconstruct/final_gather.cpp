@@ -62,7 +62,8 @@ class PointGather {
     if (most <= 0) return;
     const float little = 0.1f * options_.ray_share * whole_, weak = (link.mean + link.spread) * most;
     // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
-    if (weak < little && is_weak_here(link, most, little)) return add_modelled(link, pool_[receiver], b);
+    if (!options_.bent && weak < little && is_weak_here(link, most, little))
+      return add_modelled(link, pool_[receiver], b);
     add_source(link, link.source, b);
   }
 
@@ -112,18 +113,20 @@ class PointGather {
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);
-    if (link.sight == Sight::kClear) {
+    if (sight_of(link) == Sight::kClear) {
       visible = 1;
     } else if (count > 0) {
       visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible, &tint);
     }
-    if (link.sight == Sight::kSampled) add_doubt(factor * luminance(b), visible, count);
+    if (sight_of(link) == Sight::kSampled) add_doubt(factor * luminance(b), visible, count);
     if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
     sum_ += visible * factor * b * tint;
     if (!has_solid_angle(s.kind)) return;
     faced_ += factor;
     seen_ += visible * factor;
   }
+
+  Sight sight_of(const Link& link) const { return options_.bent ? Sight::kSampled : link.sight; }
 
   // By what the rays meet: of a floor, what is seen from the ceiling is not what lies in the shade of the
   // desks.
@@ -134,8 +137,9 @@ class PointGather {
     for (uint32_t first = 0; first < count; first += SeenPoints::kMost) {
       SeenPoints places;
       const uint32_t batch = std::min(SeenPoints::kMost, count - first);
-      const SeenShare part = solver_.visibility().look(
-          pool_, source, x_, n_, batch, first == 0 ? seed_ : hash(seed_, first), rays_, &places, link.sight);
+      const SeenShare part =
+          solver_.visibility().look(pool_, source, x_, n_, batch, first == 0 ? seed_ : hash(seed_, first),
+                                    rays_, &places, sight_of(link));
       const float weight = static_cast<float>(batch) / static_cast<float>(count);
       share.seen += weight * part.seen;
       share.hidden += weight * part.hidden;

@@ -8,6 +8,9 @@ struct GatherOptions {
   uint32_t light_rays = 32;
   float ray_share = 0.01f;
   bool trust_hidden = true;  ///< whether a weak link whose rays all were stopped is dark at every point
+  /// Whether the normal is bent from the surface's: then links say little of what comes, and of what they say
+  /// is wholly seen a part may be below the surface. All are evaluated, with rays.
+  bool bent = false;
 };
 
 /// The elements' radiosity as gathering reads it, by element: the solver's, or a better one.

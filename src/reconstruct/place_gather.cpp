@@ -63,7 +63,8 @@ std::optional<ElementId> PlaceFinder::leaf(const SurfacePlace& place) const {
   const auto& roots = part->roots[place.back ? 1 : 0];
   if (triangle == kNoTriangle || roots.empty() || triangle < roots.front().first) return std::nullopt;
   const auto root = std::upper_bound(roots.begin(), roots.end(), std::pair(triangle, kNoElement)) - 1;
-  return pool_.deepest(root->second, {place.position, place.normal, triangle});
+  const vec3& normal = place.surface == vec3(0) ? place.normal : place.surface;
+  return pool_.deepest(root->second, {place.position, normal, triangle});
 }
 
 std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver, const ShownLight& shown,
@@ -84,8 +85,15 @@ std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver,
         light[i] = solver.state().irradiance[*leaf];
         if (cancel.cancelled()) return;
         RayCount count;
-        const Gathered gathered = gather_at(solver, shown, *leaf, places[i].position, places[i].normal,
-                                            gather, hash(static_cast<uint32_t>(i), 79), count);
+        const SurfacePlace& place = places[i];
+        GatherOptions how = gather;
+        how.bent = place.surface != vec3(0);
+        // Rays start an epsilon along the normal: that shall take them off the surface, however it is bent.
+        const vec3 x = how.bent
+                           ? place.position + solver.visibility().epsilon * (place.surface - place.normal)
+                           : place.position;
+        const Gathered gathered =
+            gather_at(solver, shown, *leaf, x, place.normal, how, hash(static_cast<uint32_t>(i), 79), count);
         light[i] = gathered.irradiance * horizon_gain(1, gathered.seen);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);

@@ -16,6 +16,7 @@ struct SurfacePlace {
   bool back = false;                     ///< the back of a two-sided surface
   vec3 position{0};                      ///< world, metres, on the triangle
   vec3 normal{0};                        ///< unit: of the plane that light falls on
+  vec3 surface{0};                       ///< unit: of the surface, where `normal` is bent from it; else 0
 };
 
 /// Finds the leaf elements of places. Borrows the pool, whose elements may grow meanwhile.
@@ -41,7 +42,8 @@ class PlaceFinder {
 
 /// Irradiance (lux, linear RGB) at every place: all links into its leaf and into what that is part of,
 /// evaluated there (gather_at), with sources as bright as `shown` says, within their leaves, too. Nothing
-/// where none is received. When cancelled, the rest is the leaf's mean.
+/// where none is received. A bent normal may look below its surface, whence nothing comes. When cancelled,
+/// the rest is the leaf's mean.
 std::vector<std::optional<vec3>> gather_places(const HierarchicalSolver& solver, const ShownLight& shown,
                                                std::span<const SurfacePlace> places,
                                                const ReconstructOptions& options, const CancelToken& cancel,

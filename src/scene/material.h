@@ -46,6 +46,13 @@ struct Material {
   vec3 diffuse_transmission_colour{1};
   Texture diffuse_transmission_colour_texture;
 
+  /// Red, green, blue, 0..1 for -1..1 along tangent, bitangent (see Primitive::tangents) and normal. It bends
+  /// the plane on which light is measured at texels and given places. What vertices receive and what a
+  /// surface sends on are those of the unbent one: the viewer bends the former, and the latter is a mean over
+  /// more than its bumps.
+  Texture normal_texture;
+  float normal_scale = 1;  ///< multiplies what the texture says along tangent and bitangent
+
   bool emits() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
   bool is_glass() const { return transmission > 0 && metallic < 1 && !unlit; }
   bool is_translucent() const { return diffuse_transmission > 0 && metallic < 1 && !unlit; }

@@ -24,6 +24,9 @@ struct Primitive {
   std::vector<uint32_t> indices;   ///< 3 per triangle
   uint32_t material = 0;           ///< index in Scene::materials, always valid
   uint32_t source_primitive = 0;   ///< which primitive of the file's mesh this came from
+  /// Per vertex, or empty: unit, along the normal texture's red, and in w the sign of the bitangent, its
+  /// green, w * cross(normal, tangent) (glTF's TANGENT).
+  std::vector<vec4> tangents;
 
   size_t triangle_count() const { return indices.size() / 3; }
 };

@@ -144,7 +144,8 @@ Status Bake::check_options() const {
 
 Status Bake::load() {
   tell("load", 0);
-  Result<Scene> scene = read_scene(options_.input);
+  Result<Scene> scene = read_scene(
+      options_.input, options_.points_file.empty() ? NormalTextures::kLeftOut : NormalTextures::kRead);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   if (Status status = add_requested_lights(scene_, options_); !status) return status;
@@ -167,7 +168,8 @@ Status Bake::read_places() {
   for (const Receiver& r : receivers_) {
     const TracedTriangle& triangle = traced.triangles()[r.triangle];
     const TracedPart& part = traced.parts()[triangle.part];
-    places_.push_back({part.instance, part.primitive, triangle.source, r.back, r.origin, r.normal});
+    places_.push_back(
+        {part.instance, part.primitive, triangle.source, r.back, r.origin, r.normal, r.surface});
   }
   return Nothing{};
 }

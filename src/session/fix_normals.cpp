@@ -23,7 +23,11 @@ void turn_normals(Primitive& primitive, const std::vector<uint8_t>& turned) {
   for (size_t i = 0; i < primitive.indices.size(); ++i)
     balance[primitive.indices[i]] += turned[i / 3] ? 1 : -1;
   for (size_t v = 0; v < balance.size(); ++v)
-    if (balance[v] > 0) primitive.normals[v] = -primitive.normals[v];
+    if (balance[v] > 0) {
+      primitive.normals[v] = -primitive.normals[v];
+      // The bitangent w cross(normal, tangent) stays where it was.
+      if (!primitive.tangents.empty()) primitive.tangents[v].w *= -1;
+    }
 }
 
 void turn_triangles(Primitive& primitive, const std::vector<uint8_t>& turned) {

@@ -106,7 +106,7 @@ class Run {
 
 Status Run::load() {
   if (listener_.on_progress) listener_.on_progress({"load", 0, 0, 0, since(start_), -1});
-  Result<Scene> scene = read_scene(options_.input);
+  Result<Scene> scene = read_scene(options_.input, NormalTextures::kRead);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   if (Status status = add_requested_lights(scene_, options_); !status) return status;

@@ -114,6 +114,7 @@ std::string record_of(const Receiver& receiver, const IrradianceSums& sums) {
     text += R"("irradiance":null,"standard_error":null,)";
   }
   append(text, "origin", dvec3(receiver.origin));
+  if (receiver.surface != vec3(0)) append(text, "surface", dvec3(receiver.surface));
   fmt::format_to(std::back_inserter(text), "\"samples\":{}", sums.samples);
   if (sums.samples > 0) {
     text += ",\"batch_sums\":";
@@ -132,6 +133,11 @@ bool from_json(const Json& record, const TexelLayout& layout, Receiver& receiver
   receiver.normal = vec3(*normal);
   receiver.origin = vec3(*origin);
   if (!(std::abs(length(receiver.normal) - 1) < 1e-3f)) return false;
+  if (record.contains("surface")) {
+    const auto surface = vector_of(record, "surface");
+    if (!surface || !(std::abs(glm::length(*surface) - 1) < 1e-3)) return false;
+    receiver.surface = vec3(*surface);
+  }
   if (record.contains("instance")) {
     receiver.instance = record.at("instance").get<uint32_t>();
     receiver.primitive = record.at("primitive").get<uint32_t>();

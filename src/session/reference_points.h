@@ -12,7 +12,8 @@
 namespace goldthread {
 
 /// Reads [{"point": [x, y, z], "normal": [x, y, z]}, ...], in metres; normals need not be unit. Every point
-/// must lie on a surface of the scene. Errors name the file and the record, as "point 3", counted from 0.
+/// must lie on a surface of the scene, whose normal texture bends the normal (place_receiver). Errors name
+/// the file and the record, as "point 3", counted from 0.
 Result<std::vector<Receiver>> read_points(const std::string& file, const TracedScene& scene);
 
 /// Light at the same places by other means: [{"point", "normal", "irradiance"}, ...] under "points" in
@@ -31,9 +32,10 @@ struct SavedEstimate {
 };
 
 /// `figures` as a JSON object with all that `read_estimate` needs besides, a point a line: its place (with
-/// `instance`, `primitive`, `back`, and `vertex` or `texel` [x, y] of what is one), its irradiance (lux),
-/// standard error and samples, and its batches' sums, whose doubles survive the text exactly. Points without
-/// samples have null for irradiance and error.
+/// `instance`, `primitive`, `back`, and `vertex` or `texel` [x, y] of what is one; with `surface`, the
+/// surface's own normal, where a normal map bends it), its irradiance (lux), standard error and samples, and
+/// its batches' sums, whose doubles survive the text exactly. Points without samples have null for irradiance
+/// and error.
 std::string write_estimate(nlohmann::ordered_json figures, const SavedEstimate& estimate);
 Result<SavedEstimate> read_estimate(const std::string& file);
 

@@ -43,7 +43,7 @@ class Samples {
 
   bool full() const { return size_ == PathTracer::kBundle; }
   void add(const Receiver& receiver, PathSeed seed, dvec3& sum) {
-    starts_[size_] = {receiver.origin, receiver.normal, seed};
+    starts_[size_] = {receiver.origin, receiver.normal, seed, receiver.surface};
     sums_[size_++] = &sum;
   }
   void trace() {

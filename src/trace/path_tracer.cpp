@@ -57,6 +57,7 @@ struct Path {
   vec3 normal{0};  ///< unit
   vec3 throughput{1};
   uint32_t slot = 0;  ///< whose sum its light goes to
+  vec3 surface{0};    ///< PathStart::surface, and 0 after the first bounce
 };
 
 /// Light that is there unless something is in between.
@@ -121,9 +122,10 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
   paths_.clear();
   seeds_.clear();
   for (const PathStart& start : starts) {
-    const vec3 point = start.origin - scene_.epsilon() * start.normal;
+    const vec3 point =
+        start.origin - scene_.epsilon() * (start.surface == vec3(0) ? start.normal : start.surface);
     const auto slot = static_cast<uint32_t>(paths_.size());
-    paths_.push_back({point, start.origin, start.normal, vec3(1), slot});
+    paths_.push_back({point, start.origin, start.normal, vec3(1), slot, start.surface});
     seeds_.push_back(start.seed);
   }
   uint32_t pair = kLensPair;
@@ -169,6 +171,7 @@ void Bundle::ask(const Path& path, const LightSample& light) {
   Ray shadow = light.shadow;
   shadow.origin = path.origin;
   if (std::isfinite(shadow.far)) shadow.direction += path.point - path.origin;
+  if (dot(path.surface, shadow.direction) < 0) return;
   shadows_.push_back(shadow);
   promises_.push_back({path.throughput * light.irradiance * weight, path.slot});
 }
@@ -208,6 +211,8 @@ void Bundle::bounce(bool sure, std::span<vec3> sums) {
   size_t kept = 0;
   for (size_t i = 0; i < paths_.size(); ++i) {
     Path path = paths_[i];
+    if (dot(path.surface, rays_[i].direction) < 0) continue;
+    path.surface = vec3(0);
     const double side = scene_.has_translucent() ? unit_double(sides_[i].u) : 0;
     if (!arrive(rays_[i], meetings_[i], side, path, sums[path.slot])) continue;
     if (!sure) {

@@ -34,6 +34,9 @@ struct PathStart {
   vec3 origin{0};  ///< epsilon off its surface
   vec3 normal{0};  ///< unit: of the plane that light is measured on
   PathSeed seed;
+  /// Unit, of the surface itself where `normal` is bent: what comes from below it counts for nothing, and
+  /// `origin` lies off it. 0 where there is no other than `normal`.
+  vec3 surface{0};
 };
 
 /// What a camera looks along. The path's first pair of random numbers is left to the lens.

@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "math/oriented_box.h"
+#include "trace/normal_map.h"
 #include "trace/scrambled_sobol.h"
 
 namespace goldthread {
@@ -27,6 +28,15 @@ dvec3 nearest_on_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const 
     best = q;
   }
   return best;
+}
+
+/// Barycentric weights of corners 1 and 2 of a point in the triangle's plane.
+vec2 weights_of(const TracedScene& scene, uint32_t triangle, const vec3& p) {
+  const dvec3 a(scene.corner(triangle, 0)), u = dvec3(scene.corner(triangle, 1)) - a,
+                                            v = dvec3(scene.corner(triangle, 2)) - a, w = dvec3(p) - a,
+                                            n = cross(u, v);
+  const double squared = dot(n, n);
+  return vec2(dvec2(dot(cross(w, v), n), dot(cross(u, w), n)) / squared);
 }
 
 /// Whether anything but the triangle's own plane comes within `distance` of p.
@@ -225,7 +235,17 @@ PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const
   placed.receiver.triangle = on;
   placed.receiver.back = dot(up, scene.triangles()[on].normal) < 0;
   placed.receiver.origin = ray_origin(scene, on, foot, up);
+  placed.receiver.weights = weights_of(scene, on, foot);
+  bend(scene, placed.receiver.back ? -unit_normal : unit_normal, placed.receiver);
   return placed;
+}
+
+void bend(const TracedScene& scene, const vec3& front, Receiver& receiver) {
+  const vec3 bent = bent_normal(scene, receiver.triangle, receiver.weights, front);
+  if (bent == front) return;
+  const vec3& face = scene.triangles()[receiver.triangle].normal;
+  receiver.normal = receiver.back ? -bent : bent;
+  receiver.surface = receiver.back ? -face : face;
 }
 
 }  // namespace goldthread

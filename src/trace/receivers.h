@@ -13,6 +13,7 @@ struct Receiver {
   static constexpr uint32_t kNowhere = 0xffffffffu;
   vec3 point{0};
   vec3 normal{0};                ///< unit: of the plane that light is measured on
+  vec3 surface{0};               ///< unit: of the surface, where a normal texture bends `normal`; else 0
   vec3 origin{0};                ///< where rays start: a little above the surface, off its edges
   uint32_t triangle = kNowhere;  ///< of a random or given place: TracedScene::triangles()
   vec2 weights{0};               ///< there, of corners 1 and 2
@@ -28,20 +29,28 @@ struct Receiver {
 
 /// `count` points spread evenly by area over all sides that receive light: fronts, and backs of what is
 /// two-sided. Holes of alpha masks are left out. Point i does not depend on `count`. Empty when nothing
-/// receives.
+/// receives. Normal textures do not bend these normals: what they are compared with is interpolated from
+/// vertices, and the viewer bends it.
 std::vector<Receiver> random_receivers(const TracedScene& scene, uint64_t count, uint32_t seed);
 
 /// All vertices that triangles use, by instance, primitive and vertex, once a side; their normals are the
-/// file's, or where it has none the mean of the faces' by area.
+/// file's, or where it has none the mean of the faces' by area. Normal textures do not bend them: vertices
+/// are too far apart to hold a texture's detail, and the viewer bends their light itself.
 std::vector<Receiver> vertex_receivers(const TracedScene& scene);
 
 /// A given point on the surface nearest to it. `distance` says how far away that is, metres, infinite in an
 /// empty scene; the receiver is of use only where it is within `on_surface_distance`.
+/// The normal is the given one, bent by the material's normal texture if it has one there (bent_normal, about
+/// the given normal as that of the front or back). Directions below the surface itself bring nothing.
 struct PlacedReceiver {
   Receiver receiver;
   float distance = 0;
 };
 PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const vec3& unit_normal);
+
+/// Bends the receiver's normal by the normal texture at its triangle and weights: `front` is the unit normal
+/// of the front there, and the receiver may be on either side. Sets `surface` where it does.
+void bend(const TracedScene& scene, const vec3& front, Receiver& receiver);
 
 /// Where rays of point p of a triangle start: an epsilon above it on the side of `outward` (unit), and where
 /// another surface meets the triangle there, off that.

@@ -54,6 +54,7 @@ std::vector<Receiver> fronts_of(const TracedScene& scene, const TracedPart& part
         r.primitive = part.primitive;
         r.texel_x = texel.x;
         r.texel_y = texel.y;
+        bend(scene, r.normal, r);
       },
       256);
   std::erase_if(fronts, [&](const Receiver& r) { return scene.coverage(r.triangle, r.weights) <= 0; });
@@ -63,6 +64,7 @@ std::vector<Receiver> fronts_of(const TracedScene& scene, const TracedPart& part
 Receiver back_of(const TracedScene& scene, const Receiver& front) {
   Receiver back = front;
   back.normal = -front.normal;
+  back.surface = -front.surface;
   back.origin = ray_origin(scene, front.triangle, front.point, -scene.triangles()[front.triangle].normal);
   back.back = true;
   return back;

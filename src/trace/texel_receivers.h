@@ -37,8 +37,9 @@ constexpr uint32_t kMostTexelsAside = 16384;
 /// A receiver for each texel whose centre lies in a triangle's texture coordinates, at that place of the
 /// triangle, by instance, primitive, row and column; for what is two-sided one a side, all fronts of a
 /// primitive before all its backs. Where triangles overlap the first in the file has the texel. The normal is
-/// the file's, interpolated; where the file has none, faces are flat as glTF demands. Holes of alpha masks,
-/// unlit materials and triangles without area have no receivers.
+/// the file's, interpolated (where the file has none, faces are flat as glTF demands), and bent by the
+/// material's normal texture (bent_normal); what lies below the surface itself then brings nothing. Holes of
+/// alpha masks, unlit materials and triangles without area have no receivers.
 TexelReceivers texel_receivers(const TracedScene& scene, const TexelLayout& layout);
 
 }  // namespace goldthread

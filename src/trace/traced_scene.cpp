@@ -95,6 +95,10 @@ void add_material(Fingerprint& print, const Material& m) {
     add_texture(print, m.diffuse_transmission_texture);
     add_texture(print, m.diffuse_transmission_colour_texture);
   }
+  if (m.normal_texture.present()) {
+    add_texture(print, m.normal_texture);
+    print.add(m.normal_scale);
+  }
   for (const Texture* t : {&m.base_colour_texture, &m.metallic_texture, &m.emission_texture})
     add_texture(print, *t);
 }
@@ -377,6 +381,7 @@ uint64_t TracedScene::fingerprint() const {
     for (const std::vector<vec2>& uv : source.texcoords)
       if (!uv.empty()) print.add(vec3(interpolate(uv, t, vec2(0.25f, 0.5f)), 0));
     if (!source.colours.empty()) print.add(vec3(interpolate(source.colours, t, vec2(0.25f, 0.5f))));
+    if (!source.tangents.empty()) print.add(vec3(interpolate(source.tangents, t, vec2(0.25f, 0.5f))));
   }
   for (const Image& image : scene_.images) add_image(print, image);
   for (const Material& m : scene_.materials) add_material(print, m);

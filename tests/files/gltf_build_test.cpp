@@ -114,6 +114,20 @@ TEST(GltfBuild, LightProfilesComeBack) {
   }
 }
 
+TEST(GltfBuild, NormalTexturesComeBack) {
+  const TempFolder folder;
+  Scene before = small_scene();
+  before.materials[0].normal_texture = before.materials[0].base_colour_texture;
+  before.materials[0].normal_scale = 0.5f;
+  ASSERT_TRUE(write_scene(folder.path("a.glb"), before));
+  const Result<Scene> after = read_scene(folder.path("a.glb"), NormalTextures::kRead);
+  ASSERT_TRUE(after) << after.error().line();
+  EXPECT_EQ(after->materials[0].normal_texture.image, 0);
+  EXPECT_EQ(after->materials[0].normal_texture.rotation, 0.5f);
+  EXPECT_EQ(after->materials[0].normal_scale, 0.5f);
+  EXPECT_FALSE(after->materials[1].normal_texture.present());
+}
+
 TEST(GltfBuild, AreaLampsComeBack) {
   const TempFolder folder;
   Scene before = small_scene();

@@ -12,9 +12,9 @@ using namespace test;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-Scene read_built(const GltfBuilder& builder) {
+Scene read_built(const GltfBuilder& builder, NormalTextures normals = NormalTextures::kLeftOut) {
   TempFolder folder;
-  Result<Scene> scene = read_scene(folder.write("scene.gltf", builder.text()));
+  Result<Scene> scene = read_scene(folder.write("scene.gltf", builder.text()), normals);
   EXPECT_TRUE(scene) << scene.error().line();
   return scene ? *std::move(scene) : Scene{};
 }
@@ -221,6 +221,33 @@ TEST(GltfMaterials, WebpSourceComesFirstAndFallsBack) {
   EXPECT_EQ(scene.materials[0].base_colour_texture.image, 0);
   EXPECT_EQ(scene.images[0].name, "red");
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("broken.webp")));
+}
+
+TEST(GltfMaterials, NormalTexturesComeWithScaleAndTangents) {
+  GltfBuilder b = with_material({{"normalTexture", {{"index", 0}, {"scale", 0.5}, {"texCoord", 1}}}});
+  json& primitive = b.doc["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = b.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  primitive["attributes"]["TANGENT"] =
+      b.accessor<float>({2, 0, 0, 1, 1, 0, 0, 1, 0, 3, 0, -1}, "VEC4", kFloat);
+  Scene scene = read_built(b, NormalTextures::kRead);
+  EXPECT_EQ(scene.materials[0].normal_texture.image, 0);
+  EXPECT_EQ(scene.materials[0].normal_texture.texcoord, 1);
+  EXPECT_EQ(scene.materials[0].normal_scale, 0.5f);
+  EXPECT_EQ(scene.meshes[0].primitives[0].tangents,
+            (std::vector<vec4>{{1, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, -1}}));
+  // Who does not ask gets none, and no tangents without a texture.
+  EXPECT_FALSE(read_built(b).materials[0].normal_texture.present());
+  EXPECT_TRUE(read_built(b).meshes[0].primitives[0].tangents.empty());
+  EXPECT_TRUE(read_built(b).images.empty());
+  b.doc["materials"][0].erase("normalTexture");
+  EXPECT_TRUE(read_built(b, NormalTextures::kRead).meshes[0].primitives[0].tangents.empty());
+  // What has no direction is named, and all are taken from elsewhere.
+  b.doc["materials"][0]["normalTexture"] = {{"index", 0}};
+  b.doc["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
+      b.accessor<float>({0, 0, 0, 1, 1, 0, 0, 1, 0, 3, 0, -1}, "VEC4", kFloat);
+  scene = read_built(b, NormalTextures::kRead);
+  EXPECT_TRUE(scene.meshes[0].primitives[0].tangents.empty());
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("1 of 3 tangents have no direction")));
 }
 
 }  // namespace

@@ -151,6 +151,26 @@ TEST(SolutionFile, AreaLampsComeBackAndNeedAnArea) {
   EXPECT_NE(cut.error().line().find("light 1 is without an area"), std::string::npos) << cut.error().line();
 }
 
+TEST(SolutionFile, NormalTexturesComeBackWithTheirTangents) {
+  const TempFolder folder;
+  const std::string file = folder.path("a.gold");
+  Solution before = full_solution();
+  before.scene.materials[0].normal_texture = {0, 1, Wrap::kClamp, Wrap::kMirror, vec2(0.1f), vec2(2), 0.7f};
+  before.scene.materials[0].normal_scale = 0.5f;
+  before.scene.meshes[0].primitives[0].tangents.assign(3, vec4(1, 0, 0, -1));
+  ASSERT_TRUE(write_solution(file, before));
+  const Result<Solution> after = read_solution(file);
+  ASSERT_TRUE(after) << after.error().line();
+  EXPECT_EQ(after->scene.materials[0].normal_texture.rotation, 0.7f);
+  EXPECT_EQ(after->scene.materials[0].normal_scale, 0.5f);
+  EXPECT_EQ(after->scene.meshes[0].primitives[0].tangents, before.scene.meshes[0].primitives[0].tangents);
+  ASSERT_TRUE(write_solution(folder.path("b.gold"), *after));
+  EXPECT_EQ(content(file), content(folder.path("b.gold")));
+  before.scene.materials[0].normal_texture.image = 7;
+  ASSERT_TRUE(write_solution(file, before));
+  EXPECT_FALSE(read_solution(file));
+}
+
 TEST(SolutionFile, LongSectionsComeInParts) {
   const TempFolder folder;
   Solution before = full_solution();

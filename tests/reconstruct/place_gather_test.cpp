@@ -132,5 +132,60 @@ TEST(PlaceGather, PlacesWithoutLight) {
   for (size_t i = 1; i < light.size(); ++i) EXPECT_FALSE(light[i]) << i;
 }
 
+/// On `square`, with a normal that leans by 45 degrees to +x.
+SurfacePlace leaning(float x, float y) {
+  SurfacePlace place = on_square(x, y);
+  place.normal = normalize(vec3(1, 0, 1));
+  place.surface = {0, 0, 1};
+  return place;
+}
+
+TEST(PlaceGather, BentNormalsGetTheirOwnCosine) {
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0.5f));
+  const vec3 low = normalize(vec3(-1, 0, 0.01f)), across = normalize(vec3(2, 1, 2));
+  scene.lights = {test::lamp(LightKind::kDirectional, 1000, vec3(0), -across),
+                  test::lamp(LightKind::kDirectional, 500, vec3(0), -low)};  // behind the bent plane
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  const auto light = light_at(solved, {leaning(0.3f, -0.4f)});
+  ASSERT_TRUE(light[0]);
+  EXPECT_NEAR(double(light[0]->x), 1000 * double(dot(across, normalize(vec3(1, 0, 1)))), 0.1);
+}
+
+TEST(PlaceGather, ABentNormalLooksInVainBelowItsSurface) {
+  for (const float reflectance : {0.0f, 0.8f}) {
+    Scene scene;
+    test::add(scene, test::square(2, 0, true), test::diffuse(reflectance));
+    scene.sky.radiance = vec3(100);
+    Solved solved(std::move(scene), test::quick());
+    solved.solve();
+    const auto light = light_at(solved, {leaning(0.3f, -0.4f)});
+    ASSERT_TRUE(light[0]);
+    const double truth = 100 * double(kPi) * (1 + std::sqrt(0.5)) / 2;
+    EXPECT_NEAR(double(light[0]->x), truth, 0.01 * truth);
+  }
+}
+
+// A lit wall stands in the floor and reaches as far below it; by shafts all that the floor may see is seen.
+TEST(PlaceGather, OfAWallThatGoesOnBelowTheFloorABentNormalSeesWhatIsAbove) {
+  for (const bool shafts : {false, true}) {
+    Scene scene;
+    test::add(scene, test::square(2, 0, true), test::diffuse(0));
+    test::add(scene, test::parallelogram({1, -1, -1}, {0, 0, 2}, {0, 2, 0}), test::diffuse(0, 1000));
+    SolveOptions options = test::quick();
+    options.shafts = shafts;
+    Solved solved(std::move(scene), options);
+    solved.solve();
+    const SurfacePlace place = leaning(0.3f, -0.4f);
+    const auto light = light_at(solved, {place});
+    ASSERT_TRUE(light[0]);
+    const std::vector<vec3> above{{1, -1, 0}, {1, -1, 1}, {1, 1, 1}, {1, 1, 0}};
+    const double truth =
+        1000 * double(dot(place.normal, polygon_form_factor(place.position, place.normal, above)));
+    EXPECT_NEAR(double(light[0]->x), truth, 0.02 * truth) << shafts;
+  }
+}
+
 }  // namespace
 }  // namespace goldthread

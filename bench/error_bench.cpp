@@ -129,17 +129,19 @@ Curve error_over_time(const Folder& folder, const std::string& name, const std::
 void print_accelerators(const Folder& folder, const std::string& name) {
   struct Row {
     const char* what;
-    bool shafts, adaptive;
+    bool discontinuities, shafts, adaptive;
   };
-  const std::vector<Row> rows{{"all", true, true},
-                              {"--no-shafts", false, true},
-                              {"--no-adaptive-sampling", true, false},
-                              {"neither", false, false}};
+  const std::vector<Row> rows{{"all", true, true, true},
+                              {"--no-discontinuities", false, true, true},
+                              {"--no-shafts", true, false, true},
+                              {"--no-adaptive-sampling", true, true, false},
+                              {"none", false, false, false}};
   double least = 0;
   for (const Row& row : rows) {
     BakeOptions options;
     options.input = scene(folder, name);
     options.quality = Quality::kDraft;
+    options.discontinuities = row.discontinuities;
     options.shafts = row.shafts;
     options.adaptive_sampling = row.adaptive;
     const Measurement m = measure(folder, options);

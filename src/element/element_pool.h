@@ -85,7 +85,7 @@ struct ElementPolygon {
 struct CutPlane {
   vec3 normal{0};
   float offset = 0;
-  bool seam = false;  ///< LeafMesh::is_seam
+  Seam seam = Seam::kNone;
   bool present() const { return normal != vec3(0); }
 };
 

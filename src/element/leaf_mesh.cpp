@@ -42,9 +42,10 @@ uint32_t LeafMesh::add_edge(uint32_t origin, uint32_t face) {
   return static_cast<uint32_t>(origin_.size() - 1);
 }
 
-void LeafMesh::mark_seam(uint32_t edge) {
-  if (edge >= seam_.size()) seam_.resize(edge + 1, 0);
-  seam_[edge] = 1;
+void LeafMesh::mark_seam(uint32_t edge, Seam seam) {
+  if (seam == Seam::kNone) return;
+  if (edge >= seam_.size()) seam_.resize(edge + 1, Seam::kNone);
+  seam_[edge] = seam;
 }
 
 uint32_t LeafMesh::split_edge(uint32_t edge, const vec3& position) {
@@ -54,14 +55,14 @@ uint32_t LeafMesh::split_edge(uint32_t edge, const vec3& position) {
   const uint32_t after = add_edge(vertex, face_[edge]);
   next_[after] = next_[edge];
   next_[edge] = after;
-  if (is_seam(edge)) mark_seam(after);
+  mark_seam(after, seam(edge));
   if (other == kNoEdge) return vertex;
   // A neighbour wound the other way round runs along the edge in the same direction as we do.
   const bool same_direction = origin_[other] == origin_[edge];
   const uint32_t other_after = add_edge(vertex, face_[other]);
   next_[other_after] = next_[other];
   next_[other] = other_after;
-  if (is_seam(other)) mark_seam(other_after);
+  mark_seam(other_after, seam(other));
   const auto pair = [this](uint32_t a, uint32_t b) {
     twin_[a] = b;
     twin_[b] = a;
@@ -71,7 +72,7 @@ uint32_t LeafMesh::split_edge(uint32_t edge, const vec3& position) {
   return vertex;
 }
 
-uint32_t LeafMesh::split_face(uint32_t from, uint32_t to, bool seam) {
+uint32_t LeafMesh::split_face(uint32_t from, uint32_t to, Seam seam) {
   const uint32_t old_face = face_[from];
   const auto new_face = static_cast<uint32_t>(face_edge_.size());
   uint32_t before_to = from;
@@ -86,10 +87,8 @@ uint32_t LeafMesh::split_face(uint32_t from, uint32_t to, bool seam) {
   next_[forth] = to;
   twin_[back] = forth;
   twin_[forth] = back;
-  if (seam) {
-    mark_seam(back);
-    mark_seam(forth);
-  }
+  mark_seam(back, seam);
+  mark_seam(forth, seam);
   for (uint32_t edge = to; edge != forth; edge = next_[edge]) face_[edge] = new_face;
   face_edge_[old_face] = from;
   face_edge_.push_back(to);

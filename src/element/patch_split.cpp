@@ -177,7 +177,7 @@ bool ElementPool::split_patch(uint32_t number, const CutPlane& plane) {
   const uint32_t from = make_end(mesh, cut, i, reach);
   const uint32_t to = make_end(mesh, cut, j, reach);
   if (from == to || mesh.next(from) == to || mesh.next(to) == from) return false;
-  const uint32_t new_face = mesh.split_face(from, to, by_plane && plane.seam);
+  const uint32_t new_face = mesh.split_face(from, to, by_plane ? plane.seam : Seam::kNone);
   Patch a = parent, b = parent;
   a.first_child = b.first_child = kNoElement;
   b.face = new_face;

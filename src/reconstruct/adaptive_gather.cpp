@@ -22,12 +22,18 @@ constexpr int kLooks = 3;
 // A vertex is gathered again when the faces around it have become this much smaller.
 constexpr float kDrawnInAgain = 0.25f;
 
+// How far light points are drawn into their face, as a share of the way to its middle; at a gap past where
+// light gets under.
+constexpr float kInward = 0.03f, kPastGap = 0.2f;
+
 // Points on an edge are drawn a little into their face: at the edge itself, a wall that stands on a floor is
 // neither before nor behind it.
 vec3 drawn_in(const LightPoint& point, const PartPoints& points, float epsilon) {
   const vec3 way = points.face_centres[point.face] - point.position;
   const float distance = length(way);
-  const float step = std::min(0.5f * distance, std::max(0.03f * distance, 16 * epsilon));
+  const auto seams = points.seams.find(point.vertex);
+  const float share = seams != points.seams.end() && seams->second.gap ? kPastGap : kInward;
+  const float step = std::min(0.5f * distance, std::max(share * distance, 16 * epsilon));
   return point.position + way * (distance > 0 ? step / distance : 0.0f);
 }
 

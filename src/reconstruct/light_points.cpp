@@ -98,10 +98,11 @@ namespace {
 constexpr float kSameSeam = 1e-3f;
 constexpr size_t kMostSeams = 32;  // bits
 
-void note_seam(std::vector<vec3>& seams, const vec3& normal) {
-  for (const vec3& other : seams)
+void note_seam(SeamsAtVertex& seams, const vec3& normal, Seam seam) {
+  seams.gap |= seam == Seam::kGap;
+  for (const vec3& other : seams.normals)
     if (length(cross(other, normal)) < kSameSeam) return;
-  if (seams.size() < kMostSeams) seams.push_back(normal);
+  if (seams.normals.size() < kMostSeams) seams.normals.push_back(normal);
 }
 
 void collect_seams(const LeafView& view, const NormalSource& normals, PartPoints& out) {
@@ -112,12 +113,12 @@ void collect_seams(const LeafView& view, const NormalSource& normals, PartPoints
     uint32_t edge = first;
     do {
       const uint32_t next = mesh.next(edge);
-      if (mesh.is_seam(edge)) {
+      if (mesh.seam(edge) != Seam::kNone) {
         const uint32_t a = mesh.origin(edge), b = mesh.origin(next);
         const vec3 along = mesh.positions()[b] - mesh.positions()[a];
         const vec3 n = normalize_or(cross(along, normals.geometric(view.triangle(f))), vec3(0));
         if (n != vec3(0))
-          for (const uint32_t v : {a, b}) note_seam(out.seams[v], n);
+          for (const uint32_t v : {a, b}) note_seam(out.seams[v], n, mesh.seam(edge));
       }
       edge = next;
     } while (edge != first);
@@ -130,8 +131,8 @@ uint32_t PartPoints::sides_of(uint32_t vertex, const vec3& position, const vec3&
   const auto found = seams.find(vertex);
   if (found == seams.end()) return 0;
   uint32_t sides = 0;
-  for (size_t i = 0; i < found->second.size(); ++i)
-    if (dot(found->second[i], place - position) > 0) sides |= 1u << i;
+  for (size_t i = 0; i < found->second.normals.size(); ++i)
+    if (dot(found->second.normals[i], place - position) > 0) sides |= 1u << i;
   return sides;
 }
 

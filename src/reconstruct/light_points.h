@@ -12,13 +12,19 @@ namespace goldthread {
 
 /// A corner of the leaf mesh with the normal that light falls on. Corners of adjoining faces are one point
 /// where their normals agree, several where they crease, or lie on different sides of a seam
-/// (LeafMesh::is_seam).
+/// (LeafMesh::seam).
 struct LightPoint {
   vec3 position{0};
   vec3 normal{0};       ///< unit, on the front: the source's vertex normals, or the faces' own
   uint32_t face = 0;    ///< the smallest leaf face it belongs to
   uint32_t vertex = 0;  ///< of the leaf mesh; of the part's own where that is uncut
   uint32_t sides = 0;   ///< PartPoints::sides_of its faces
+};
+
+/// The seams (LeafMesh::seam) that meet at a vertex.
+struct SeamsAtVertex {
+  std::vector<vec3> normals;  ///< unit, in the surface
+  bool gap = false;           ///< one of them is a Seam::kGap
 };
 
 /// The final mesh of a part: triangulated leaf faces over light points.
@@ -29,8 +35,7 @@ struct PartPoints {
   std::vector<uint32_t> corners;   ///< light point of each face corner, in the face's loop order
   std::vector<vec3> face_centres;  ///< per leaf face
   std::vector<vec3> face_normals;  ///< per leaf face, unit, on the front, of the geometry itself
-  /// Unit normals, in the surface, of the seams that meet at a vertex.
-  std::unordered_map<uint32_t, std::vector<vec3>> seams;
+  std::unordered_map<uint32_t, SeamsAtVertex> seams;  ///< by vertex
 
   /// On which sides of the seams at a vertex `place` lies, a bit each. Light may jump between places that
   /// differ in this.

@@ -190,6 +190,7 @@ struct RayCaster::State {
   std::vector<uint32_t> opaque;  // source triangle of geometry 0's primitives; empty when it is the identity
   FilterData see_through;
   std::vector<std::pair<std::span<const vec3>, std::span<const UVec3>>> geometries;  // Embree's own buffers
+  std::vector<unsigned> geometry_ids;                                                // theirs
   std::vector<TriangleTree> trees;                                                   // over these, for shafts
 
   uint32_t triangle_of(unsigned geometry, unsigned primitive) const {
@@ -235,6 +236,7 @@ struct RayCaster::State {
     for (size_t i = 0; i < count; ++i) indices[i] = triangles[subset != nullptr ? (*subset)[i] : i];
     geometries.emplace_back(std::span<const vec3>(vertices, positions.size()),
                             std::span<const UVec3>(indices, count));
+    geometry_ids.push_back(id);
     if (id == 1) {
       rtcSetGeometryUserData(geometry, &see_through);
       rtcSetGeometryOccludedFilterFunction(geometry, filter_shadow);
@@ -402,11 +404,13 @@ bool RayCaster::is_clear(const Shaft& shaft) const {
   return true;
 }
 
-void RayCaster::visit_near(
-    const Box& box, const vec3& normal, float offset, float slack,
-    const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const {
+void RayCaster::visit_near(const Box& box, const vec3& normal, float offset, float slack,
+                           const std::function<void(uint32_t triangle)>& visit) const {
   GOLDTHREAD_CHECK_EQ(state_->trees.size(), state_->geometries.size());
-  for (const TriangleTree& tree : state_->trees) tree.visit_near(box, normal, offset, slack, visit);
+  for (size_t g = 0; g < state_->trees.size(); ++g)
+    state_->trees[g].visit_near(box, normal, offset, slack, [&](uint32_t primitive) {
+      visit(state_->triangle_of(state_->geometry_ids[g], primitive));
+    });
 }
 
 float RayCaster::epsilon() const {

@@ -85,7 +85,7 @@ class RayCaster {
   bool is_clear(const Shaft& shaft) const;
   /// TriangleTree::visit_near over all triangles. prepare_shafts must have been called.
   void visit_near(const Box& box, const vec3& normal, float offset, float slack,
-                  const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const;
+                  const std::function<void(uint32_t triangle)>& visit) const;
   /// Builds what shafts and boxes are tested against, once. Not from within parallel loops.
   void prepare_shafts() const;
 

@@ -96,9 +96,8 @@ bool TriangleTree::is_clear(const Shaft& shaft) const {
   return true;
 }
 
-void TriangleTree::visit_near(
-    const Box& box, const vec3& normal, float offset, float slack,
-    const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const {
+void TriangleTree::visit_near(const Box& box, const vec3& normal, float offset, float slack,
+                              const std::function<void(uint32_t triangle)>& visit) const {
   if (nodes_.empty()) return;
   const auto apart = [&](const Box& other) {
     for (int k = 0; k < 3; ++k)
@@ -118,10 +117,7 @@ void TriangleTree::visit_near(
       stack[depth++] = at + 1;
       continue;
     }
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const UVec3& c = triangles_[order_[i]];
-      visit(positions_[c.x], positions_[c.y], positions_[c.z]);
-    }
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) visit(order_[i]);
   }
 }
 

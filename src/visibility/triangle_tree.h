@@ -18,10 +18,10 @@ class TriangleTree {
   /// Whether no triangle reaches into the shaft. "No" may be wrong where "yes" is never (Shaft::excludes).
   bool is_clear(const Shaft& shaft) const;
 
-  /// Calls `visit` with the corners of each triangle that may come within `slack` metres of the plane
+  /// Calls `visit` for each triangle that may come within `slack` metres of the plane
   /// dot(normal, p) = offset (normal unit) inside `box`; and of some others.
   void visit_near(const Box& box, const vec3& normal, float offset, float slack,
-                  const std::function<void(const vec3& a, const vec3& b, const vec3& c)>& visit) const;
+                  const std::function<void(uint32_t triangle)>& visit) const;
 
   uint64_t memory_bytes() const {
     return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(uint32_t);

@@ -304,7 +304,7 @@ struct CutSquare : Elements {
         if ((*pool)[id].kind == ElementKind::kTriangle) triangles.push_back(id);
       if (triangles.size() < 2) expand(1);
     }
-    const CutPlane plane{{1, 0, 0}, 0.3f, seam};
+    const CutPlane plane{{1, 0, 0}, 0.3f, seam ? Seam::kGap : Seam::kNone};
     pool->expand(triangles, std::vector<CutPlane>(2, plane));
   }
   static Scene square() {
@@ -344,7 +344,8 @@ TEST(ElementPool, APlaneThatMissesGivesTheRegularCut) {
   for (const ElementId id : elements.leaves())
     if (elements.pool->operator[](id).kind == ElementKind::kTriangle) triangles.push_back(id);
   ASSERT_FALSE(triangles.empty());
-  elements.pool->expand(triangles, std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 7, true}));
+  elements.pool->expand(triangles,
+                        std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 7, Seam::kSharp}));
   for (const ElementId id : triangles) EXPECT_NE((*elements.pool)[id].first_child, kNoElement);
   EXPECT_FALSE(elements.pool->leaf_mesh(0)->has_seams());
 }
@@ -359,8 +360,8 @@ TEST(ElementPool, CutsOfASeamStaySeams) {
     do {
       const vec3 a = mesh.positions()[mesh.origin(edge)], b = mesh.positions()[mesh.origin(mesh.next(edge))];
       const bool on_line = std::abs(a.x - 0.3f) < 1e-6f && std::abs(b.x - 0.3f) < 1e-6f;
-      EXPECT_EQ(mesh.is_seam(edge), on_line);
-      if (mesh.is_seam(edge)) seam += double(length(b - a));
+      EXPECT_EQ(mesh.seam(edge) != Seam::kNone, on_line);
+      if (mesh.seam(edge) != Seam::kNone) seam += double(length(b - a));
       edge = mesh.next(edge);
     } while (edge != mesh.first_edge(f));
   }

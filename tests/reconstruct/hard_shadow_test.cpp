@@ -50,6 +50,9 @@ Found measure_floor(bool discontinuities, double tolerance) {
       const UVec3& c = mesh.triangles[t];
       const vec3 p =
           (1 - at.u - at.v) * part.positions[c.x] + at.u * part.positions[c.y] + at.v * part.positions[c.z];
+      // Under a block nobody looks: its top is seen from behind.
+      const Hit above = solved.caster->closest({p, vec3(0, 1, 0), 1e-5f});
+      if (!above.missed() && above.normal.y > 0) continue;
       const vec3 way = lamp.position - p;
       const float squared = dot(way, way);
       const double truth = double(lamp.intensity.x * way.y / (squared * std::sqrt(squared)) *

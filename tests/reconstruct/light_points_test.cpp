@@ -248,7 +248,9 @@ Elements square_with_seam(bool seam, int times) {
   std::vector<ElementId> triangles;
   for (const ElementId id : elements.leaves())
     if ((*elements.pool)[id].kind == ElementKind::kTriangle) triangles.push_back(id);
-  elements.pool->expand(triangles, std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 0.3f, seam}));
+  elements.pool->expand(
+      triangles,
+      std::vector<CutPlane>(triangles.size(), CutPlane{{1, 0, 0}, 0.3f, seam ? Seam::kSharp : Seam::kNone}));
   for (int i = 0; i < times; ++i) {
     std::vector<ElementId> beyond;
     for (const ElementId id : elements.leaves())

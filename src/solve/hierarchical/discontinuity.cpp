@@ -13,11 +13,18 @@ namespace {
 // A cut leaves on either side a strip at least this wide, as a share of the piece's radius: thinner ones wait
 // until the piece is smaller.
 constexpr float kThinnest = 0.005f;
-// How much of a cut something has to stand along.
-constexpr float kAlong = 0.5f;
+// How much of a cut something has to stand along; and how much if the cut is to come before those along
+// shadows.
+constexpr float kAlong = 0.25f, kMostly = 0.5f;
+// And how much of it, without a gap, where there may be another room on the far side.
+constexpr float kParts = 0.5f;
+// What is larger than this for the scene may be a wall.
+constexpr float kWall = 0.15f;
 // Lines this near, as a share of the radius, are one.
 constexpr float kSameLine = 1e-3f;
-// A surface that shines and is smaller than this for its distance casts shadows that have an edge.
+// What hovers no higher than this, as a share of the radius, stands on the piece: little light gets under it.
+constexpr float kHovers = 0.02f;
+// What shines and is smaller than this for its distance casts shadows that have an edge.
 constexpr float kSmall = 0.1f;
 // Places from which a lamp is looked for.
 constexpr uint32_t kLooks = 32;
@@ -29,11 +36,11 @@ constexpr float kExplains = 0.5f, kPartsClean = 0.1f;
 constexpr uint32_t kFewTriangles = 64;
 
 // A line in a piece's plane: dot(normal, q) = offset, and how much of the part within the piece something
-// stands along.
+// stands along, with or without a gap beneath.
 struct Line {
   vec2 normal{0};
   float offset = 0;
-  float covered = 0, length = 0;
+  float covered = 0, closed = 0, walled = 0, length = 0;
 };
 
 // A triangle or patch in its own plane.
@@ -61,7 +68,7 @@ struct Piece {
 
   vec2 flat(const vec3& p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
 
-  CutPlane plane(const Line& line, bool seam) const {
+  CutPlane plane(const Line& line, Seam seam) const {
     const vec3 n = line.normal.x * u + line.normal.y * v;
     return {n, line.offset + dot(n, origin), seam};
   }
@@ -102,24 +109,28 @@ bool meets_plane(const std::array<vec3, 3>& corners, const std::array<float, 3>&
   return count == 2;
 }
 
-// Lines along which something stands on the piece or passes through it.
+// Lines along which something stands on the piece or passes through it. What is within `slack` metres of the
+// plane is in it; what is within `epsilon` leaves no gap.
 class FootLines {
  public:
-  FootLines(const Piece& piece, bool both_sides, float epsilon)
-      : piece_(piece), both_sides_(both_sides), epsilon_(epsilon) {}
+  FootLines(const Piece& piece, bool both_sides, float slack, float epsilon)
+      : piece_(piece), both_sides_(both_sides), slack_(slack), epsilon_(epsilon) {}
 
-  void add(const vec3& a, const vec3& b, const vec3& c) {
-    const std::array<vec3, 3> corners{a, b, c};
+  void add(const std::array<vec3, 3>& corners, bool large) {
     std::array<float, 3> heights;
     float highest = 0;
+    bool closed = true;
     for (size_t k = 0; k < 3; ++k) {
       heights[k] = dot(corners[k] - piece_.origin, piece_.normal);
-      if (std::abs(heights[k]) <= epsilon_) heights[k] = 0;
+      if (std::abs(heights[k]) <= slack_) {
+        closed &= std::abs(heights[k]) <= epsilon_;
+        heights[k] = 0;
+      }
       highest = std::max(highest, heights[k]);
     }
     vec3 from, to;
     if ((highest <= 0 && !both_sides_) || !meets_plane(corners, heights, from, to)) return;
-    add(piece_.flat(from), piece_.flat(to));
+    add(piece_.flat(from), piece_.flat(to), closed, large);
   }
 
   std::optional<Line> best() const {
@@ -131,7 +142,7 @@ class FootLines {
   }
 
  private:
-  void add(const vec2& from, const vec2& to) {
+  void add(const vec2& from, const vec2& to, bool closed, bool large) {
     const float span = length(to - from);
     if (!(span > kSameLine * piece_.radius)) return;
     const vec2 along = (to - from) / span;
@@ -144,12 +155,16 @@ class FootLines {
     const float start = glm::dot(along, from);
     line.covered = std::min(chord->y, start + span) - std::max(chord->x, start);
     if (line.covered <= kSameLine * piece_.radius) return;
+    line.closed = closed ? line.covered : 0;
+    line.walled = large ? line.closed : 0;
     for (Line& other : lines_) {
       const float same = glm::dot(other.normal, line.normal) < 0 ? -1.0f : 1.0f;
       if (length(other.normal - same * line.normal) > kSameLine ||
           std::abs(other.offset - same * line.offset) > kSameLine * piece_.radius)
         continue;
       other.covered += line.covered;
+      other.closed += line.closed;
+      other.walled += line.walled;
       return;
     }
     lines_.push_back(line);
@@ -157,19 +172,27 @@ class FootLines {
 
   const Piece& piece_;
   const bool both_sides_;
-  const float epsilon_;
+  const float slack_, epsilon_;
   std::vector<Line> lines_;
 };
 
-std::optional<Line> find_foot(const ElementPool& pool, const Visibility& visibility, const Piece& piece,
-                              ElementId id) {
+std::array<vec3, 3> corners_of(const SurfaceSet& set, uint32_t triangle) {
+  const Part& part = part_of_triangle(set, triangle);
+  const UVec3& c = set.tree(part).mesh.triangles[triangle - part.first_triangle];
+  return {part.positions[c.x], part.positions[c.y], part.positions[c.z]};
+}
+
+std::optional<Line> find_foot(const ElementPool& pool, const Visibility& visibility,
+                              std::span<const float> sizes, const Piece& piece, ElementId id) {
   const SurfaceSet& set = pool.surfaces();
   const bool both = set.scene->materials[set.parts[pool[id].part].material].lit_behind();
-  FootLines feet(piece, both, visibility.epsilon);
+  const float slack = std::max(visibility.epsilon, kHovers * piece.radius);
+  FootLines feet(piece, both, slack, visibility.epsilon);
   Box box;
   for (const vec3& p : piece.polygon.span()) box.add(p);
-  visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), visibility.epsilon,
-                                [&](const vec3& a, const vec3& b, const vec3& c) { feet.add(a, b, c); });
+  const float wall = kWall * visibility.extent;
+  visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), slack,
+                                [&](uint32_t t) { feet.add(corners_of(set, t), sizes[t] >= wall); });
   return feet.best();
 }
 
@@ -179,12 +202,19 @@ vec3 way_to(const ElementPool& pool, ElementId lamp, const vec3& x, float far) {
   if (e.kind == ElementKind::kSun) return -far * pool.light(lamp).direction;
   const vec3 way = e.centre - x;
   if (is_surface(e.kind) && dot(way, e.summed_normal) >= 0) return vec3(0);
+  if (e.kind == ElementKind::kPoint && pool.light(lamp).has_area() &&
+      dot(way, pool.light(lamp).direction) >= 0)
+    return vec3(0);
   return way;
 }
 
-bool has_size(const ElementPool& pool, ElementId lamp) {
-  if (is_surface(pool[lamp].kind)) return true;
-  return pool.light(lamp).radius > 0 || pool.light(lamp).angular_diameter > 0;
+// Metres from a lamp's middle to what is farthest of it; of a sun radians, as if it were a metre away.
+float reach_of(const ElementPool& pool, ElementId lamp) {
+  const Element& e = pool[lamp];
+  if (is_surface(e.kind)) return e.radius;
+  const Light& light = pool.light(lamp);
+  if (e.kind == ElementKind::kSun) return 0.5f * light.angular_diameter;
+  return light.has_area() ? light.reach() : light.radius;
 }
 
 // Places of the piece, and whether they see the lamp.
@@ -245,10 +275,9 @@ std::optional<Line> find_shadow_edge(const ElementPool& pool, const Visibility& 
   std::optional<Line> best;
   float most = 0;
   for (const uint32_t t : looks.blockers) {
-    const Part& part = part_of_triangle(set, t);
-    const UVec3& c = set.tree(part).mesh.triangles[t - part.first_triangle];
-    for (int k = 0; k < 3; ++k) {
-      const vec3 &a = part.positions[c[k]], &b = part.positions[c[(k + 1) % 3]];
+    const std::array<vec3, 3> corners = corners_of(set, t);
+    for (size_t k = 0; k < 3; ++k) {
+      const vec3 &a = corners[k], &b = corners[(k + 1) % 3];
       // Shadows of the edge end where the plane through it and the lamp meets the piece.
       const vec3 n = normalize_or(cross(b - a, way_to(pool, lamp, a, 1)), vec3(0));
       const vec2 flat(dot(n, piece.u), dot(n, piece.v));
@@ -273,20 +302,21 @@ bool is_polygon(ElementKind kind) {
 CutPlane find_discontinuity(const ElementPool& pool, const Visibility& visibility, ElementId id,
                             const Feet& feet, const LampLinks& lamps, RayCount& rays) {
   if (!is_polygon(pool[id].kind)) return {};
-  if (feet.any(id)) return feet.of(id);
+  if (feet.is_long(id)) return feet.of(id);
   const Piece piece(pool.polygon(id));
   for (const ElementId lamp : lamps.lamps_of(id))
     if (const std::optional<Line> edge = find_shadow_edge(pool, visibility, piece, id, lamp, rays))
-      return piece.plane(*edge, !has_size(pool, lamp));
-  return {};
+      return piece.plane(*edge, reach_of(pool, lamp) > 0 ? Seam::kNone : Seam::kSharp);
+  return feet.of(id);
 }
 
 bool casts_edges(const ElementPool& pool, const Link& link) {
   if (link.visibility == 0 || link.visibility == 255) return false;
   const Element &r = pool[link.receiver], &s = pool[link.source];
-  if (s.kind == ElementKind::kPoint || s.kind == ElementKind::kSun) return true;
-  return s.kind != ElementKind::kSky && s.kind != ElementKind::kVolume && largest(s.exitance) > 0 &&
-         s.radius < kSmall * length(s.centre - r.centre);
+  if (s.kind == ElementKind::kSky || s.kind == ElementKind::kVolume || !(largest(s.exitance) > 0))
+    return false;
+  const float distance = s.kind == ElementKind::kSun ? 1.0f : length(s.centre - r.centre);
+  return reach_of(pool, link.source) < kSmall * distance;
 }
 
 }  // namespace
@@ -319,23 +349,51 @@ std::vector<ElementId> LampLinks::lamps_of(ElementId id) const {
 
 namespace {
 
-// The foot of an element; of a cluster that of any of its triangles.
-CutPlane find_foot(const ElementPool& pool, const Visibility& visibility, ElementId id) {
+// Metres across the connected surface that each of the world's triangles belongs to.
+std::vector<float> surface_sizes(const SurfaceSet& set) {
+  std::vector<float> sizes(set.triangles, 0);
+  for (const Surface& surface : set.surfaces) {
+    const Part& part = set.parts[surface.part];
+    const FaceClusterTree& tree = set.tree(part);
+    uint32_t first = triangle_of(surface.root), count = 1;
+    if (!is_triangle(surface.root)) {
+      first = tree.nodes[surface.root].first;
+      count = tree.nodes[surface.root].count;
+    }
+    Box box;
+    for (uint32_t t = first; t < first + count; ++t)
+      for (int k = 0; k < 3; ++k) box.add(part.positions[tree.mesh.triangles[t][k]]);
+    for (uint32_t t = first; t < first + count; ++t) sizes[part.first_triangle + t] = box.diagonal();
+  }
+  return sizes;
+}
+
+struct FoundFoot {
+  CutPlane cut;
+  bool is_long = false, parts = false;
+};
+
+// The foot of an element; of a cluster whether any of its triangles has one that parts it.
+FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::span<const float> sizes,
+                    ElementId id) {
   const Element& e = pool[id];
-  const auto look = [&](const ElementPolygon& polygon) {
+  const auto look = [&](const ElementPolygon& polygon) -> FoundFoot {
     const Piece piece(polygon);
-    const std::optional<Line> foot = find_foot(pool, visibility, piece, id);
-    return foot ? piece.plane(*foot, true) : CutPlane();
+    const std::optional<Line> foot = find_foot(pool, visibility, sizes, piece, id);
+    if (!foot) return {};
+    const Seam seam = foot->closed < 0.5f * foot->covered ? Seam::kGap : Seam::kSharp;
+    return {piece.plane(*foot, seam), foot->covered >= kMostly * foot->length,
+            foot->walled >= kParts * foot->length};
   };
   if (is_polygon(e.kind)) return look(pool.polygon(id));
-  if (e.kind != ElementKind::kCluster) return {};
+  FoundFoot found;
+  if (e.kind != ElementKind::kCluster) return found;
   const SurfaceSet& set = pool.surfaces();
   const FaceCluster& node = set.tree(set.parts[e.part]).nodes[e.shape];
-  CutPlane foot;
   if (node.count <= kFewTriangles)
-    for (uint32_t t = node.first; t < node.first + node.count && !foot.present(); ++t)
-      foot = look(pool.polygon(id, t));
-  return foot;
+    for (uint32_t t = node.first; t < node.first + node.count && !found.parts; ++t)
+      found.parts = look(pool.polygon(id, t)).parts;
+  return found;
 }
 
 }  // namespace
@@ -344,12 +402,18 @@ void Feet::grow_to(const ElementPool& pool, const Visibility& visibility) {
   const size_t first = known_;
   known_ = pool.size();
   if (!visibility.discontinuities) return;
-  std::vector<CutPlane> found(known_ - first);
+  if (size_.empty()) size_ = surface_sizes(pool.surfaces());
+  std::vector<FoundFoot> found(known_ - first);
   parallel_for(
       found.size(),
-      [&](size_t i) { found[i] = find_foot(pool, visibility, static_cast<ElementId>(first + i)); }, 64);
-  for (size_t i = 0; i < found.size(); ++i)
-    if (found[i].present()) cuts_.emplace(static_cast<ElementId>(first + i), found[i]);
+      [&](size_t i) { found[i] = find_foot(pool, visibility, size_, static_cast<ElementId>(first + i)); },
+      64);
+  for (size_t i = 0; i < found.size(); ++i) {
+    const auto id = static_cast<ElementId>(first + i);
+    if (found[i].cut.present()) cuts_.emplace(id, found[i].cut);
+    if (found[i].is_long) long_.insert(id);
+    if (found[i].parts) parted_.insert(id);
+  }
 }
 
 CutPlane Feet::of(ElementId id) const {

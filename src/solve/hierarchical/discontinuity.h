@@ -2,6 +2,7 @@
 // *Discontinuity Meshing for Radiosity*, 1992; thesis 9.2.1).
 #pragma once
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "solve/hierarchical/link.h"
@@ -9,8 +10,8 @@
 
 namespace goldthread {
 
-/// The links whose shadows may have edges worth a cut, by receiver: from lamps, suns, and surfaces that shine
-/// and are small for their distance, of which some of the receiver sees something and some does not.
+/// The links whose shadows may have edges worth a cut, by receiver: from lamps, suns and shining surfaces
+/// that are small for their distance, of which some of the receiver sees something and some does not.
 class LampLinks {
  public:
   /// `pool` is borrowed.
@@ -28,28 +29,37 @@ class LampLinks {
   std::vector<Entry> links_;
 };
 
-/// Where something stands on a triangle or patch or passes through it, along at least half of a cut: its
-/// foot. On either side there may be another room. Of clusters of few triangles it is known only that some
-/// triangle has one.
+/// Where something stands on a triangle or patch, hovers close above it or passes through it, along at least
+/// a quarter of a cut: its foot.
 class Feet {
  public:
   /// Looks for the feet of elements that are new since the last call. In parallel. Finds none where
   /// Visibility::discontinuities is off.
   void grow_to(const ElementPool& pool, const Visibility& visibility);
 
-  bool any(ElementId id) const { return cuts_.contains(id); }
-  /// Absent where there is none.
+  /// Whether what stands there is as large as a wall and leaves no gap: on the far side there may be another
+  /// room. Of a cluster of few triangles: whether that is so of any.
+  bool part(ElementId id) const { return parted_.contains(id); }
+  /// Absent where there is none, and for clusters.
   CutPlane of(ElementId id) const;
+  /// Whether it runs along at least half of the cut.
+  bool is_long(ElementId id) const { return long_.contains(id); }
 
  private:
   std::unordered_map<ElementId, CutPlane> cuts_;
+  std::unordered_set<ElementId> long_, parted_;
+  std::vector<float> size_;  // metres, by the world's triangles: of the connected surface it belongs to
   size_t known_ = 0;
 };
 
+/// Pieces that a foot parts are cut along it down to this share of the least area of other cuts.
+constexpr float kLeastAtFoot = 1.0f / 64;
+
 /// For each of `ids` the plane along which light jumps most, or an absent one; for what is neither triangle
-/// nor patch always that. The foot, if there is one. Else the edge of a shadow: of the edges that hide a
-/// lamp, the one whose shadow best parts the places that see the lamp from those that do not. Absent
-/// throughout where Visibility::discontinuities is off. In parallel; adds the rays cast to `rays`.
+/// nor patch always that. A foot that runs along at least half of the cut, if there is one. Else the edge of a
+/// shadow: of the edges that hide a lamp, the one whose shadow best parts the places that see the lamp from
+/// those that do not. Else a shorter foot. Absent throughout where Visibility::discontinuities is off. In
+/// parallel; adds the rays cast to `rays`.
 std::vector<CutPlane> find_discontinuities(const ElementPool& pool, const Visibility& visibility,
                                            std::span<const ElementId> ids, const Feet& feet,
                                            const LampLinks& lamps, RayCount& rays);

@@ -29,9 +29,6 @@ constexpr double kNoise = 0.5;
 // blotched.
 constexpr double kBlotch = 0.01;
 
-// Receivers with a foot are cut along it down to this share of the least area.
-constexpr float kLeastAtFoot = 1.0f / 64;
-
 // How much of an element's area cancels in its summed normal: 0 for a plane, 1 for a closed object.
 double turned_share(const Element& e) {
   return e.area > 0 ? std::max(0.0, 1 - static_cast<double>(length(e.summed_normal) / e.area)) : 0;
@@ -90,9 +87,9 @@ Decision decide(const ElementPool& pool, const Feet& feet, const RadiosityState&
   const double weight = static_cast<double>(options.regard.of(pool[link.receiver]));
   error.receiver *= weight;
   error.source *= weight;
-  // On either side of a foot there may be another room, whatever the samples say.
-  if (feet.any(link.receiver) && link.receiver != link.source && s.kind != ElementKind::kVolume &&
-      may_open_receiver(r, kLeastAtFoot * options.least_area))
+  // There may be two rooms there, whatever the samples say.
+  if (feet.part(link.receiver) && link.receiver != link.source && s.kind != ElementKind::kVolume &&
+      link.sight != Sight::kClear && may_open_receiver(r, kLeastAtFoot * options.least_area))
     return Decision::kReceiver;
   if (error.total() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area),

@@ -7,6 +7,13 @@
 
 namespace goldthread {
 
+namespace {
+
+// Feet that no link asked about are cut down to this share of the least area.
+constexpr float kLeastAtHiddenFoot = 0.125f;
+
+}  // namespace
+
 HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster,
                                        const SolveOptions& options)
     : options_(options),
@@ -61,6 +68,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   stats_.limited |= counters.limited;
   if (pool_.surfaces().has_translucent) cut_sides_alike();
   const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
+  if (last) cut_at_feet(kLeastAtHiddenFoot * refine_options.least_area);
   if (last) measure_all(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays);
   // The first steps only have to find where the light goes; the last has to settle.
   sweep(last ? 400 : 3, last ? options_.settled : 30 * options_.settled, cancel);
@@ -69,6 +77,18 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   stats_.converged = last;
   bound_ = std::max(options_.last_error, bound_ * options_.error_ratio);
   return !last;
+}
+
+// Light differs on the two sides of a foot even where links need not know it.
+void HierarchicalSolver::cut_at_feet(float least_area) {
+  for (std::vector<ElementId> leaves;; leaves.clear()) {
+    for (ElementId id = 0; id < pool_.size(); ++id)
+      if (pool_[id].first_child == kNoElement && !pool_[id].indivisible && pool_[id].area > 2 * least_area &&
+          feet_.of(id).present())
+        leaves.push_back(id);
+    if (leaves.empty()) return;
+    cut_leaves(leaves);
+  }
 }
 
 // What shines through a sheet is as uneven as the light behind it, which its own light knows nothing of: a

@@ -72,6 +72,7 @@ class HierarchicalSolver {
   void make_first_links();
   double first_power() const;
   void cut_sides_alike();
+  void cut_at_feet(float least_area);
   void sweep(uint32_t most, double settled, const CancelToken& cancel);
 
   const SolveOptions options_;

@@ -56,8 +56,8 @@ class Feet {
 constexpr float kLeastAtFoot = 1.0f / 64;
 
 /// For each of `ids` the plane along which light jumps most, or an absent one; for what is neither triangle
-/// nor patch always that. A foot that runs along at least half of the cut, if there is one. Else the edge of a
-/// shadow: of the edges that hide a lamp, the one whose shadow best parts the places that see the lamp from
+/// nor patch always that. A foot that runs along at least half of the cut, if there is one. Else the edge of
+/// a shadow: of the edges that hide a lamp, the one whose shadow best parts the places that see the lamp from
 /// those that do not. Else a shorter foot. Absent throughout where Visibility::discontinuities is off. In
 /// parallel; adds the rays cast to `rays`.
 std::vector<CutPlane> find_discontinuities(const ElementPool& pool, const Visibility& visibility,

@@ -45,25 +45,6 @@ ElementId ElementPool::behind(ElementId id, size_t end) const {
   return id == kNoElement ? kNoElement : passages_[id].twin;
 }
 
-namespace {
-
-// Boxes of a component: its triangles' world vertices.
-Box box_of(const SurfaceSet& set, const Surface& surface) {
-  const Part& part = set.parts[surface.part];
-  const FaceClusterTree& tree = set.tree(part);
-  uint32_t first = triangle_of(surface.root), count = 1;
-  if (!is_triangle(surface.root)) {
-    first = tree.nodes[surface.root].first;
-    count = tree.nodes[surface.root].count;
-  }
-  Box box;
-  for (uint32_t t = first; t < first + count; ++t)
-    for (int k = 0; k < 3; ++k) box.add(part.positions[tree.mesh.triangles[t][k]]);
-  return box;
-}
-
-}  // namespace
-
 void ElementPool::make_volumes() {
   const size_t count = set_->surfaces.size();
   if (count == 0) return;

@@ -175,4 +175,19 @@ const Part& part_of_triangle(const SurfaceSet& set, uint32_t triangle) {
   return *(after - 1);
 }
 
+TriangleRange triangles_of(const SurfaceSet& set, const Surface& surface) {
+  if (is_triangle(surface.root)) return {triangle_of(surface.root), 1};
+  const FaceCluster& node = set.tree(set.parts[surface.part]).nodes[surface.root];
+  return {node.first, node.count};
+}
+
+Box box_of(const SurfaceSet& set, const Surface& surface) {
+  const Part& part = set.parts[surface.part];
+  const TriangleRange range = triangles_of(set, surface);
+  Box box;
+  for (uint32_t t = range.first; t < range.first + range.count; ++t)
+    for (int k = 0; k < 3; ++k) box.add(part.positions[set.tree(part).mesh.triangles[t][k]]);
+  return box;
+}
+
 }  // namespace goldthread

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "cluster/face_cluster_tree.h"
+#include "math/box.h"
 #include "scene/scene.h"
 
 namespace goldthread {
@@ -62,6 +63,14 @@ struct SurfaceSet {
 
   const FaceClusterTree& tree(const Part& part) const { return trees[part.tree]; }
 };
+
+/// The triangles of the part's tree that a surface consists of: [first, first + count).
+struct TriangleRange {
+  uint32_t first = 0, count = 0;
+};
+TriangleRange triangles_of(const SurfaceSet& set, const Surface& surface);
+/// The box of their world vertices.
+Box box_of(const SurfaceSet& set, const Surface& surface);
 
 /// Welds, clusters and places every lit primitive of `scene`, which must outlive the result.
 SurfaceSet build_surfaces(const Scene& scene, const CancelToken& cancel);

@@ -74,7 +74,9 @@ void TriangleTree::build(size_t node, uint32_t begin, uint32_t end, std::span<co
   nodes_[node].box.add(nodes_[right].box);
 }
 
-bool TriangleTree::is_clear(const Shaft& shaft) const {
+// Visits triangles in nodes that `excluded` does not rule out, until `visit` says no; whether it never did.
+template <typename Excluded, typename Visit>
+bool TriangleTree::walk(const Excluded& excluded, const Visit& visit) const {
   if (nodes_.empty()) return true;
   std::array<uint32_t, 64> stack;  // depth is the logarithm of a 32-bit number
   size_t depth = 0;
@@ -82,43 +84,38 @@ bool TriangleTree::is_clear(const Shaft& shaft) const {
   while (depth > 0) {
     const uint32_t at = stack[--depth];
     const Node& node = nodes_[at];
-    if (node.box.empty() || shaft.excludes(node.box)) continue;
+    if (node.box.empty() || excluded(node.box)) continue;
     if (node.count == 0) {
       stack[depth++] = node.first;
       stack[depth++] = at + 1;
       continue;
     }
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const UVec3& c = triangles_[order_[i]];
-      if (!shaft.excludes(positions_[c.x], positions_[c.y], positions_[c.z])) return false;
-    }
+    for (uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (!visit(order_[i])) return false;
   }
   return true;
 }
 
+bool TriangleTree::is_clear(const Shaft& shaft) const {
+  return walk([&](const Box& box) { return shaft.excludes(box); },
+              [&](uint32_t triangle) {
+                const UVec3& c = triangles_[triangle];
+                return shaft.excludes(positions_[c.x], positions_[c.y], positions_[c.z]);
+              });
+}
+
 void TriangleTree::visit_near(const Box& box, const vec3& normal, float offset, float slack,
                               const std::function<void(uint32_t triangle)>& visit) const {
-  if (nodes_.empty()) return;
   const auto apart = [&](const Box& other) {
     for (int k = 0; k < 3; ++k)
       if (other.low[k] > box.high[k] + slack || other.high[k] < box.low[k] - slack) return true;
     const vec3 half = 0.5f * other.size();
     return std::abs(dot(normal, other.centre()) - offset) > dot(glm::abs(normal), half) + slack;
   };
-  std::array<uint32_t, 64> stack;  // depth is the logarithm of a 32-bit number
-  size_t depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const uint32_t at = stack[--depth];
-    const Node& node = nodes_[at];
-    if (node.box.empty() || apart(node.box)) continue;
-    if (node.count == 0) {
-      stack[depth++] = node.first;
-      stack[depth++] = at + 1;
-      continue;
-    }
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) visit(order_[i]);
-  }
+  walk(apart, [&](uint32_t triangle) {
+    visit(triangle);
+    return true;
+  });
 }
 
 }  // namespace goldthread

@@ -33,6 +33,8 @@ class TriangleTree {
     uint32_t first = 0;  // of order_, or the second child; the first follows its parent
     uint32_t count = 0;  // of a leaf; 0 of an inner node
   };
+  template <typename Excluded, typename Visit>
+  bool walk(const Excluded& excluded, const Visit& visit) const;
   void build(size_t node, uint32_t begin, uint32_t end, std::span<const vec3> centres);
 
   std::span<const vec3> positions_;

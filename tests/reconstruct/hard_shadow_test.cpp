@@ -74,7 +74,7 @@ Found measure_floor(bool discontinuities, double tolerance) {
 }
 
 // A tenth of the elements at no more error. Cut regularly, with more than ten times as many the floor is
-// still some fifteen times as wrong.
+// still more than five times as wrong.
 TEST(HardShadow, TakesATenthOfTheElements) {
   const Found with = measure_floor(true, 0.02), without = measure_floor(false, 0.02);
   EXPECT_LT(with.error, 0.02);

@@ -353,17 +353,10 @@ namespace {
 std::vector<float> surface_sizes(const SurfaceSet& set) {
   std::vector<float> sizes(set.triangles, 0);
   for (const Surface& surface : set.surfaces) {
-    const Part& part = set.parts[surface.part];
-    const FaceClusterTree& tree = set.tree(part);
-    uint32_t first = triangle_of(surface.root), count = 1;
-    if (!is_triangle(surface.root)) {
-      first = tree.nodes[surface.root].first;
-      count = tree.nodes[surface.root].count;
-    }
-    Box box;
-    for (uint32_t t = first; t < first + count; ++t)
-      for (int k = 0; k < 3; ++k) box.add(part.positions[tree.mesh.triangles[t][k]]);
-    for (uint32_t t = first; t < first + count; ++t) sizes[part.first_triangle + t] = box.diagonal();
+    const TriangleRange range = triangles_of(set, surface);
+    const float size = box_of(set, surface).diagonal();
+    const uint32_t first = set.parts[surface.part].first_triangle + range.first;
+    std::fill_n(sizes.begin() + first, range.count, size);
   }
   return sizes;
 }

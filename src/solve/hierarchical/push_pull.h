@@ -14,8 +14,8 @@ struct SweepChange {
 
 /// Gathers every link (equation 4.20), pushes irradiance vectors to the leaves (4.16), turns them into
 /// radiosity (4.21) and pulls averages up (4.17). Vectors are kept apart by octant of direction on the way
-/// down, so that two lamps on opposite sides of a cluster do not cancel. Leaves whose sampled
-/// form factors add up to more than `most_seen` are scaled down to that.
+/// down, so that two lamps on opposite sides of a cluster do not cancel. Leaves whose sampled form factors
+/// add up to more than `most_seen` are scaled down to that.
 SweepChange gather_push_pull(const ElementPool& pool, const LinkPool& links, RadiosityState& state,
                              float most_seen = 1.25f, const Regard& regard = {});
 

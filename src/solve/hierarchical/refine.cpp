@@ -181,6 +181,7 @@ void open_elements(ElementPool& pool, const Visibility& visibility, Feet& feet,
   std::erase_if(wanted, [&](ElementId id) { return pool[id].first_child != kNoElement; });
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  if (wanted.empty()) return;
   const LampLinks lamps(pool, state, links);
   pool.expand(wanted, find_discontinuities(pool, visibility, wanted, feet, lamps, rays));
   feet.grow_to(pool, visibility);

@@ -6,7 +6,6 @@
 #include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
-
 namespace {
 
 // Feet that no link asked about are cut down to this share of the least area.

@@ -115,7 +115,7 @@ AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_are
 void AdaptiveGather::test_leaves(bool again) {
   errors_.resize(solver_.pool().size());
   const std::vector<Test> tests = list_tests(again);
-  const double unit_area = solver_.pool().surfaces().area / kLeastTests;
+  const double unit_area = regarded_area(solver_.pool(), solver_.regard()) / kLeastTests;
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(
       tests.size(),

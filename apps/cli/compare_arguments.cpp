@@ -11,6 +11,7 @@ constexpr const char* kVerb = "compare";
 constexpr const char* kExamples =
     "Examples:\n"
     "  goldthread compare room.gold --reference --points 2000 --target-error 1%\n"
+    "  goldthread compare room.gold --reference --seen --picture-size 128x128\n"
     "  goldthread compare draft.gold final.gold -o diff.png\n"
     "  goldthread compare mine.exr theirs.exr --json c.json";
 
@@ -25,6 +26,9 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   verb->add_option("--points", options.points, "of solutions: random places on the lit surfaces (1000)")
       ->type_name("N")
       ->check(CLI::Range(uint64_t{1}, uint64_t{100000000}).description(""));
+  verb->add_flag("--seen", options.seen,
+                 "of solutions: instead, the places that the camera sees, one a pixel of --picture-size")
+      ->excludes("--points");
   verb->add_option("--samples", command.samples, "of the reference: paths a point (1024)")
       ->type_name("N")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 36).description(""));

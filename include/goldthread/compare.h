@@ -16,6 +16,7 @@ struct CompareOptions {
   bool reference = false;  ///< measure `first`, a solution, against path tracing of its own scene
 
   uint64_t points = 1000;              ///< random places over the lit surfaces, by area
+  bool seen = false;                   ///< instead, what the camera sees at the middle of each pixel
   std::optional<uint64_t> samples;     ///< reference: a point; 1024 when neither this nor the next is given
   std::optional<double> target_error;  ///< reference: stop at this mean of standard error over irradiance
   std::optional<double> time_limit;    ///< reference: seconds for all of it
@@ -28,7 +29,8 @@ struct CompareOptions {
   std::string csv_file;
   std::string picture;      ///< .png: where `first` is under (blue), right (grey), over (red); empty for none
   double full_scale = 0.2;  ///< relative error that is fully blue or red
-  int picture_width = 320, picture_height = 0;  ///< of solutions; height 0 follows the camera's aspect
+  /// Pixels of `picture` and `seen`, of solutions; height 0 follows the camera's aspect.
+  int picture_width = 320, picture_height = 0;
 };
 
 struct CompareResult {

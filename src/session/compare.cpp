@@ -159,6 +159,8 @@ Status Comparison::check_options() {
       return usage("a signed picture is a .png", "end it in .png", options_.picture);
     if (const auto probe = AtomicFile::create(options_.picture); !probe) return probe.error();
   }
+  if (options_.seen && of_pictures_)
+    return usage("of pictures every pixel is compared", "leave --seen out", options_.first);
   if (!options_.csv_file.empty() && of_pictures_)
     return usage("pictures have no points to list", "leave --csv out", options_.csv_file);
   for (const std::string& file : {options_.json_file, options_.csv_file})
@@ -290,7 +292,9 @@ Status Comparison::compare_solutions() {
                    "compare solutions of the same geometry"};
   }
   const std::vector<Receiver> receivers =
-      random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
+      options_.seen
+          ? look(*first->traced, options_.picture_width, options_.picture_height).receivers
+          : random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
   std::vector<size_t> which;
   const Result<std::vector<Measured>> places =
       measure(*first, second ? &*second : nullptr, receivers, which, options_.seed);

@@ -258,7 +258,11 @@ float depth_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) 
 
 }  // namespace
 
-ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
+ElementId ElementPool::deepest(ElementId id, const SurfacePoint& at) const {
+  SurfacePoint point = at;
+  if (point.triangle == kSomeTriangle && elements_[id].kind == ElementKind::kCluster &&
+      elements_[id].first_child != kNoElement)
+    point.triangle = find_triangle(elements_[id], point);
   while (elements_[id].first_child != kNoElement) {
     const Element& e = elements_[id];
     const ElementId child = e.first_child;
@@ -280,6 +284,51 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
     id = first ? child : child + 1;
   }
   return id;
+}
+
+// The triangle of a cluster that holds a point, or comes nearest to: of rounding's making there may be none.
+uint32_t ElementPool::find_triangle(const Element& cluster, const SurfacePoint& point) const {
+  const Part& part = set_->parts[cluster.part];
+  const FaceClusterTree& tree = set_->tree(part);
+  constexpr size_t kStack = 256;
+  std::array<ClusterRef, kStack> stack;
+  size_t depth = 0;
+  stack[depth++] = cluster.shape;
+  uint32_t found = tree.nodes[cluster.shape].first;
+  float best = std::numeric_limits<float>::lowest();
+  while (depth > 0 && best < 0) {
+    const ClusterRef ref = stack[--depth];
+    if (is_triangle(ref)) {
+      const float within =
+          depth_within(triangle_polygon(cluster, triangle_of(ref)), point.normal, point.position);
+      if (within > best) {
+        best = within;
+        found = triangle_of(ref);
+      }
+      continue;
+    }
+    const FaceCluster& node = tree.nodes[ref];
+    const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - point.position;
+    const float reach = 1.001f * node.radius * part.scale;
+    if (dot(d, d) > reach * reach || depth + 2 > kStack) continue;
+    stack[depth++] = node.child[1];
+    stack[depth++] = node.child[0];
+  }
+  return found;
+}
+
+ElementPolygon ElementPool::outline(ElementId cluster, ClusterRef node) const {
+  return outline(elements_[cluster], node);
+}
+
+ElementPolygon ElementPool::outline(const Element& element, ClusterRef node) const {
+  const Part& part = set_->parts[element.part];
+  ElementPolygon polygon;
+  for (const vec3& corner : set_->tree(part).outlines.of(node))
+    polygon.corners[polygon.count++] = vec3(part.to_world * vec4(corner, 1));
+  if (orientation(part, element) < 0)
+    std::reverse(polygon.corners.data(), polygon.corners.data() + polygon.count);
+  return polygon;
 }
 
 ElementPolygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {

@@ -58,9 +58,16 @@ Scene mixed_furnace(float b) {
 }
 
 TEST(KnownAnswers, MixedFurnaceIsUniform) {
-  Solved solved(mixed_furnace(3));
-  solved.solve();
-  expect_uniform(solved, 3, 0.06, 0.003);
+  // The darkest and the brightest of thousands of leaves are a matter of luck: they must be right for any.
+  for (const uint32_t seed : {0u, 1u, 2u}) {
+    SCOPED_TRACE(seed);
+    SolveOptions options;
+    options.seed = seed;
+    options.least_area = 1e-4;
+    Solved solved(mixed_furnace(3), options);
+    solved.solve();
+    expect_uniform(solved, 3, 0.06, 0.003);
+  }
 }
 
 /// Irradiance averaged over 7^3 cells of the unit cube, so that solutions with other leaves compare. No

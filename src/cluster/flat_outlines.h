@@ -1,0 +1,44 @@
+// Clusters that are convex polygons: how a flat wall is cut into triangles changes nothing that can be seen.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace goldthread {
+
+struct FaceClusterTree;
+
+/// Outlines of those clusters of a tree that fill a convex polygon of few corners in one plane, without hole
+/// or fold, so that the polygon may stand for them.
+class FlatOutlines {
+ public:
+  /// The most corners that are kept.
+  static constexpr size_t kMostCorners = 8;
+
+  FlatOutlines() = default;
+  /// `tree` must have its sums and bounds. O(n log n) at worst.
+  explicit FlatOutlines(const FaceClusterTree& tree);
+
+  /// Corners of an inner node in the tree's space, counter-clockwise about its summed normal; none when it is
+  /// bent, not convex or has more than kMostCorners.
+  std::span<const vec3> of(uint32_t node) const {
+    if (node >= first_.size()) return {};
+    const uint32_t first = first_[node];
+    return first == kNone ? std::span<const vec3>() : std::span(corners_.data() + first + 1, count(first));
+  }
+
+  uint64_t memory_bytes() const {
+    return first_.capacity() * sizeof(uint32_t) + corners_.capacity() * sizeof(vec3);
+  }
+
+ private:
+  static constexpr uint32_t kNone = 0xffffffffu;
+  // Each outline is led by an entry whose x is its number of corners.
+  size_t count(uint32_t first) const { return static_cast<size_t>(corners_[first].x); }
+
+  std::vector<uint32_t> first_;  // by node, into corners_
+  std::vector<vec3> corners_;
+};
+
+}  // namespace goldthread

@@ -156,6 +156,9 @@ class ElementPool {
   ElementPolygon polygon(ElementId cluster, uint32_t triangle) const {
     return triangle_polygon(elements_[cluster], triangle);
   }
+  /// RMS contrast of what a face cluster, triangle or patch reflects: the standard deviation of its
+  /// reflectance's luminance over the mean, by sixteen places; 0 of one colour and of black.
+  float texture_contrast(ElementId id) const;
   /// The convex polygon that an inner node below a face cluster is; without corners when it is none.
   ElementPolygon outline(ElementId cluster, ClusterRef node) const;
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
@@ -218,6 +221,7 @@ class ElementPool {
   ElementPolygon patch_polygon(const Element& element) const;
   ElementPolygon outline(const Element& element, ClusterRef node) const;
   uint32_t find_triangle(const Element& cluster, const SurfacePoint& point) const;
+  Paint paint_of(const Part& part, uint32_t triangle, const vec3& place) const;
 
   const SurfaceSet* set_;
   std::vector<Element> elements_;

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "element/element_pool.h"
 #include "element/paint.h"
+#include "math/colour.h"
 #include "math/spherical_triangle.h"
 
 namespace goldthread {
@@ -148,10 +149,6 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   const Patch& patch = patches_[number];
   const Part& part = set_->parts[patch.part];
   const std::span<const vec3> corners(&corners_[patch.first_corner], patch.corners);
-  const UVec3& c = set_->tree(part).mesh.triangles[patch.triangle];
-  const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
-  const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2);
-  const float scale = 1 / std::max(dot(n, n), 1e-30f);
   Paint paint{vec3(0), vec3(0), 0, vec3(0), vec3(0)};
   constexpr uint32_t kPoints = 16;
   ElementPolygon polygon;
@@ -159,10 +156,7 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   std::copy(corners.begin(), corners.end(), polygon.corners.begin());
   for (uint32_t i = 0; i < kPoints; ++i) {
     const UnitSquarePoint uv = r2_point(i, number);
-    const vec3 p = sample_polygon(polygon, vec3(0), uv.u, uv.v).position - a;
-    const vec2 weights =
-        glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
-    const Paint one = paint_at(*set_, part, patch.triangle, weights);
+    const Paint one = paint_of(part, patch.triangle, sample_polygon(polygon, vec3(0), uv.u, uv.v).position);
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
@@ -170,6 +164,36 @@ Paint ElementPool::patch_paint(uint32_t number) const {
     paint.transmittance += one.transmittance / static_cast<float>(kPoints);
   }
   return paint;
+}
+
+// The paint of a triangle at a place on it.
+Paint ElementPool::paint_of(const Part& part, uint32_t triangle, const vec3& place) const {
+  const UVec3& c = set_->tree(part).mesh.triangles[triangle];
+  const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
+  const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2), p = place - a;
+  const float scale = 1 / std::max(dot(n, n), 1e-30f);
+  const vec2 weights = glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
+  return paint_at(*set_, part, triangle, weights);
+}
+
+float ElementPool::texture_contrast(ElementId id) const {
+  const Element& element = elements_[id];
+  const Part& part = set_->parts[element.part];
+  if (part.triangle_reflectance.empty()) return 0;
+  constexpr uint32_t kPlaces = 16;
+  float sum = 0, squares = 0;
+  for (uint32_t i = 0; i < kPlaces; ++i) {
+    const UnitSquarePoint uv = r2_point(i, id);
+    const SurfacePoint point = sample_at(id, uv.u, uv.v);
+    const uint32_t triangle = element.kind == ElementKind::kPatch ? patches_[element.shape].triangle
+                              : point.triangle == kSomeTriangle   ? find_triangle(element, point)
+                                                                  : point.triangle;
+    const float value = luminance(paint_of(part, triangle, point.position).reflectance);
+    sum += value;
+    squares += value * value;
+  }
+  const float mean = sum / kPlaces;
+  return mean > 0 ? std::sqrt(std::max(0.0f, squares / kPlaces - mean * mean)) / mean : 0.0f;
 }
 
 // What fill_paint is to an element, for its passage.

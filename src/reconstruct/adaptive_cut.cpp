@@ -149,7 +149,9 @@ bool AdaptiveGather::cut() {
   const double mean = light / area, whole = regarded_area(pool, solver_.regard());
   // What counts of a leaf's error.
   const auto counted = [&](ElementId id) {
-    const double weight = weight_of_darkness(adapted_light(pool, solver_.state(), id, whole), mean);
+    if (!(errors_[id].squares() > 0)) return 0.0;
+    const double weight = weight_of_darkness(adapted_light(pool, solver_.state(), id, whole), mean) *
+                          weight_of_masking(static_cast<double>(pool.texture_contrast(id)));
     return errors_[id].squares() * regarded[id] * weight * weight;
   };
   std::vector<ElementId> worst;

@@ -54,11 +54,18 @@ TEST(Regard, DarknessCountsForMoreButNotWithoutEnd) {
   EXPECT_EQ(weight_of_darkness(100, 100), 1);
   EXPECT_EQ(weight_of_darkness(21, 100), 1);
   // Every share of a stimulus counts alike: half the light, twice the weight.
-  for (double light = 19; light > 2; light /= 2)
+  for (double light = 19; light > 4; light /= 2)
     EXPECT_NEAR(weight_of_darkness(light / 2, 100), 2 * weight_of_darkness(light, 100), 1e-9);
   EXPECT_EQ(weight_of_darkness(0.01, 100), weight_of_darkness(0, 100));
-  EXPECT_NEAR(weight_of_darkness(0, 100), 20, 1e-9);
+  EXPECT_NEAR(weight_of_darkness(0, 100), 10, 1e-9);
   EXPECT_EQ(weight_of_darkness(std::numeric_limits<double>::infinity(), 100), 1);
+}
+
+TEST(Regard, WhatIsPatternedHidesErrorsByHalfAtMost) {
+  EXPECT_EQ(weight_of_masking(0), 1);
+  EXPECT_EQ(weight_of_masking(0.05), 1);
+  EXPECT_NEAR(weight_of_masking(0.1), std::pow(2, -0.62), 1e-12);
+  EXPECT_EQ(weight_of_masking(1), 0.5);
 }
 
 }  // namespace

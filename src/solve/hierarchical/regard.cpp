@@ -21,7 +21,7 @@ constexpr float kOpen = 0.1f;
 
 // Down to this share of the mean the eye is as well adapted as in the rest; below this share of that, nobody
 // sees anything.
-constexpr double kSameRoom = 0.2, kBlack = 0.05;
+constexpr double kSameRoom = 0.2, kBlack = 0.1;
 
 // Within this many of the detail's own radii everything counts in full.
 constexpr float kAround = 2;
@@ -88,6 +88,11 @@ double adapted_light(const ElementPool& pool, const RadiosityState& state, Eleme
   while (pool[id].parent != kNoElement && static_cast<double>(pool[id].area) < kLookedAt * area)
     id = pool[id].parent;
   return static_cast<double>(largest(state.irradiance[id]));
+}
+
+double weight_of_masking(double contrast) {
+  constexpr double kSeen = 0.05, kSlope = 0.62, kLeast = 0.5;
+  return contrast > kSeen ? std::max(kLeast, std::pow(contrast / kSeen, -kSlope)) : 1.0;
 }
 
 double weight_of_darkness(double adapted, double mean) {

@@ -2,25 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "math/colour.h"
 
 namespace goldthread {
 namespace {
 
-/// Equation 1 without its delta: black pixels are left out of the average instead of being lifted, so that
-/// the result depends neither on the unit nor on how much of the picture is empty.
-double log_average(const std::vector<float>& luminances) {
-  double sum = 0;
-  for (float value : luminances) sum += std::log(static_cast<double>(value));
-  return std::exp(sum / static_cast<double>(luminances.size()));
+// Photographers part a picture in zones of a stop each (Adams, on whom Reinhard draws): five stops below the
+// middle a print is black, and two more no exposure that suits the rest would bring back.
+constexpr float kBlack = 1.0f / 128;
+
+// `ascending`, not empty: where the sum of the cube roots is half of all.
+float middle_of_lightness(const std::vector<float>& ascending) {
+  double all = 0, up_to = 0;
+  for (const float value : ascending) all += std::cbrt(static_cast<double>(value));
+  for (const float value : ascending)
+    if (up_to += std::cbrt(static_cast<double>(value)); up_to >= all / 2) return value;
+  return ascending.back();
 }
 
-float percentile(std::vector<float>& values, double share) {
-  const auto rank = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
-  return values[rank];
+float percentile(const std::vector<float>& ascending, double share) {
+  return ascending[static_cast<size_t>(share * static_cast<double>(ascending.size() - 1))];
 }
 
 }  // namespace
@@ -36,17 +39,34 @@ vec3 ToneMap::operator()(const vec3& nits) const {
   return glm::max(colour / largest, vec3(0));
 }
 
+std::vector<float> lit_luminances(std::vector<float> luminances) {
+  std::erase_if(luminances, [](float value) { return !(value > 0) || !std::isfinite(value); });
+  if (luminances.empty()) return luminances;
+  std::sort(luminances.begin(), luminances.end());
+  const float least = kBlack * middle_of_lightness(luminances);
+  luminances.erase(luminances.begin(), std::lower_bound(luminances.begin(), luminances.end(), least));
+  return luminances;
+}
+
+double log_average(std::span<const float> lit) {
+  // Black pixels are left out instead of being lifted by a delta, so that the result depends neither on the
+  // unit nor on how much of the picture is empty.
+  double sum = 0;
+  for (const float value : lit) sum += std::log(static_cast<double>(value));
+  return lit.empty() ? 0 : std::exp(sum / static_cast<double>(lit.size()));
+}
+
 ToneMap choose_tone_map(std::span<const vec3> nits, float key, float exposure) {
   std::vector<float> luminances;
   luminances.reserve(nits.size());
-  for (const vec3& pixel : nits)
-    if (const float value = luminance(pixel); value > 0 && std::isfinite(value)) luminances.push_back(value);
+  for (const vec3& pixel : nits) luminances.push_back(luminance(pixel));
+  const std::vector<float> lit = lit_luminances(std::move(luminances));
   ToneMap map;
   if (exposure > 0) map.scale = exposure;
-  if (luminances.empty()) return map;
-  if (!(exposure > 0)) map.scale = static_cast<float>(static_cast<double>(key) / log_average(luminances));
+  if (lit.empty()) return map;
+  if (!(exposure > 0)) map.scale = static_cast<float>(static_cast<double>(key) / log_average(lit));
   // Below 1 the operator would brighten what is already in range.
-  map.white = std::max(1.0f, map.scale * percentile(luminances, 0.995));
+  map.white = std::max(1.0f, map.scale * percentile(lit, 0.995));
   return map;
 }
 

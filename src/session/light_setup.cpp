@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "element/paint.h"
 #include "math/colour.h"
+#include "math/tone_map.h"
 
 namespace goldthread {
 
@@ -62,20 +64,16 @@ bool ends_on_back(const SurfaceSet& surfaces, const RayCaster& caster, const Ray
 
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked) {
   if (asked > 0) return asked;
-  double sum = 0, count = 0;
+  std::vector<float> nits;
   for (const LitPrimitive& lit : lighting.primitives) {
     const Mesh& mesh = scene.meshes[scene.instances[lit.instance].mesh];
     const Material& material = scene.materials[mesh.primitives[lit.primitive].material];
     const vec3 reflectance = material.base_colour * (1 - material.metallic) * (1 - material.transmission);
-    for (const vec3& e : lit.irradiance) {
-      const float nits = luminance(reflectance * e) / kPi;
-      if (!(nits > 0)) continue;
-      sum += std::log(static_cast<double>(nits));
-      count += 1;
-    }
+    for (const vec3& e : lit.irradiance) nits.push_back(luminance(reflectance * e) / kPi);
   }
   // A little above middle grey: COLOR_0 cannot go past 1, but is seldom near it.
-  return count > 0 ? static_cast<float>(0.25 / std::exp(sum / count)) : 1.0f;
+  const std::vector<float> seen = lit_luminances(std::move(nits));
+  return seen.empty() ? 1.0f : static_cast<float>(0.25 / log_average(seen));
 }
 
 IrradianceRange irradiance_range(const Lighting& lighting) {

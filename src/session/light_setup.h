@@ -29,8 +29,8 @@ Passing transparency(uint32_t triangle, vec2 weights, const SurfaceSet& surfaces
 /// Whether a ray ends on the side of a one-sided surface that neither reflects nor emits.
 bool ends_on_back(const SurfaceSet& surfaces, const RayCaster& caster, const Ray& ray);
 
-/// Nits to COLOR_0 units: a given exposure, or one that maps the scene's log-average outgoing light to middle
-/// grey.
+/// Nits to COLOR_0 units: a given exposure, or one that maps the log average of what is lit of the scene's
+/// outgoing light (`log_average`) to middle grey.
 float unlit_exposure(const Scene& scene, const Lighting& lighting, float asked);
 
 /// Least and greatest luminance of all vertices' irradiance, both sides, lx; and how many have none that is a

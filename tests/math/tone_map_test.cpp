@@ -41,6 +41,37 @@ TEST(ToneMap, LogAverageMapsToTheKey) {
   EXPECT_EQ(choose_tone_map(nits, 0.18f, 2.5f).scale, 2.5f);
 }
 
+TEST(ToneMap, NearlyBlackHalvesOfPicturesDoNotMoveTheExposure) {
+  // A lit room seen through a window: two decades of luminance, and around it a wall without light, on which
+  // there is a little all the same.
+  std::vector<vec3> nits;
+  for (int i = 0; i < 1000; ++i) nits.emplace_back(2 * std::pow(10.0f, static_cast<float>(i % 100) / 50.0f));
+  const ToneMap alone = choose_tone_map(nits);
+  for (const float wall : {0.0f, 1e-5f, 1e-3f, 0.02f}) {
+    std::vector<vec3> framed = nits;
+    framed.resize(2 * nits.size(), vec3(wall));
+    const ToneMap map = choose_tone_map(framed);
+    EXPECT_EQ(map.scale, alone.scale) << wall;
+    EXPECT_EQ(map.white, alone.white) << wall;
+  }
+  // Nine tenths of it, too.
+  std::vector<vec3> slit = nits;
+  slit.resize(10 * nits.size(), vec3(1e-4f));
+  EXPECT_EQ(choose_tone_map(slit).scale, alone.scale);
+}
+
+TEST(ToneMap, ShadesCountAndLampsInViewDoNotHideThem) {
+  // A corner at a fiftieth of the room's light is part of the picture, a lamp's few bright pixels do not make
+  // it black.
+  std::vector<vec3> nits(500, vec3(50));
+  nits.resize(990, vec3(1));
+  const double log_mean = (500 * std::log(50.0)) / 990;
+  EXPECT_NEAR(choose_tone_map(nits).scale, 0.18 / std::exp(log_mean), 1e-4);
+  nits.resize(1000, vec3(1e5f));
+  const double with_lamp = (500 * std::log(50.0) + 10 * std::log(1e5)) / 1000;
+  EXPECT_NEAR(choose_tone_map(nits).scale, 0.18 / std::exp(with_lamp), 1e-4);
+}
+
 TEST(ToneMap, WhiteIsNearTheBrightestAndNotTheOutlier) {
   std::vector<vec3> nits(1000);
   for (size_t i = 0; i < nits.size(); ++i) nits[i] = vec3(static_cast<float>(i + 1));

@@ -135,6 +135,32 @@ TEST(Compare, EveryPointIsALine) {
   EXPECT_EQ(inside, figures["points_inside_solids"].get<int>());
 }
 
+TEST(Compare, WhatTheCameraSees) {
+  const TempFolder folder;
+  CompareOptions options;
+  options.first = options.second = gold(folder, "cornell-box");
+  options.seen = true;
+  options.picture_width = 32;
+  options.picture_height = 32;
+  options.csv_file = folder.path("points.csv");
+  const nlohmann::json figures = nlohmann::json::parse(compared(options).json);
+  // The box fills the picture but for a margin around its mouth.
+  EXPECT_GT(figures["points"].get<int>(), 700);
+  EXPECT_LE(figures["points"].get<int>(), 1024);
+  EXPECT_EQ(figures["points_inside_solids"].get<int>(), 0);
+  // Nothing that faces away is asked about: the camera looks along +z from before the box.
+  std::istringstream lines(bytes_of_file(options.csv_file));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    dvec3 place, normal;
+    numbers >> place.x >> place.y >> place.z >> normal.x >> normal.y >> normal.z;
+    EXPECT_GT(glm::dot(normal, dvec3(0.278, 0.273, -0.8) - place), 0) << line;
+  }
+}
+
 TEST(Compare, AFurnaceIsRightToTheReferencesNoise) {
   const TempFolder folder;
   CompareOptions options;

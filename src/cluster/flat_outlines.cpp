@@ -52,7 +52,7 @@ float area_of(std::span<const vec2> polygon) {
 
 }  // namespace
 
-FlatOutlines::FlatOutlines(const FaceClusterTree& tree) : first_(tree.nodes.size(), kNone) {
+FlatOutlines::FlatOutlines(const FaceClusterTree& tree) : outline_(tree.nodes.size(), kNone), first_{0} {
   // Hulls of flat clusters, which wait for the cluster above; children come after their parents.
   std::vector<std::vector<vec3>> hulls(tree.nodes.size());
   std::vector<vec3> points;
@@ -83,9 +83,9 @@ FlatOutlines::FlatOutlines(const FaceClusterTree& tree) : first_(tree.nodes.size
     if (hull.size() < 3 || hull.size() > kMostCarried) continue;
     for (const vec2& p : hull) hulls[i].push_back(frame.origin + p.x * frame.u + p.y * frame.v);
     if (hull.size() > kMostCorners || std::abs(area_of(hull) - node.area) > kFilled * node.area) continue;
-    first_[i] = static_cast<uint32_t>(corners_.size());
-    corners_.emplace_back(static_cast<float>(hull.size()), 0.0f, 0.0f);
+    outline_[i] = static_cast<uint32_t>(first_.size() - 1);
     corners_.insert(corners_.end(), hulls[i].begin(), hulls[i].end());
+    first_.push_back(static_cast<uint32_t>(corners_.size()));
   }
   corners_.shrink_to_fit();
 }

@@ -23,21 +23,20 @@ class FlatOutlines {
   /// Corners of an inner node in the tree's space, counter-clockwise about its summed normal; none when it is
   /// bent, not convex or has more than kMostCorners.
   std::span<const vec3> of(uint32_t node) const {
-    if (node >= first_.size()) return {};
-    const uint32_t first = first_[node];
-    return first == kNone ? std::span<const vec3>() : std::span(corners_.data() + first + 1, count(first));
+    if (node >= outline_.size() || outline_[node] == kNone) return {};
+    const uint32_t first = first_[outline_[node]], end = first_[outline_[node] + 1];
+    return std::span(corners_).subspan(first, end - first);
   }
 
   uint64_t memory_bytes() const {
-    return first_.capacity() * sizeof(uint32_t) + corners_.capacity() * sizeof(vec3);
+    return (outline_.capacity() + first_.capacity()) * sizeof(uint32_t) + corners_.capacity() * sizeof(vec3);
   }
 
  private:
   static constexpr uint32_t kNone = 0xffffffffu;
-  // Each outline is led by an entry whose x is its number of corners.
-  size_t count(uint32_t first) const { return static_cast<size_t>(corners_[first].x); }
 
-  std::vector<uint32_t> first_;  // by node, into corners_
+  std::vector<uint32_t> outline_;  // by node
+  std::vector<uint32_t> first_;    // by outline, into corners_; and the end
   std::vector<vec3> corners_;
 };
 

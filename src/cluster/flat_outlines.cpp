@@ -11,8 +11,10 @@ namespace {
 
 // How much of its area a plane may lose in its summed normal, by rounding.
 constexpr float kTurned = 1e-6f;
-// How far corners may lie from the plane, as a share of the radius.
-constexpr float kThick = 5e-5f;
+// How far corners may lie from the plane: as a share of the radius, and of the largest coordinate, whose
+// rounding it is. Well within what rays leave surfaces by (RayCaster::epsilon), or places on the polygon
+// would lie behind the triangles.
+constexpr float kThick = 2e-6f, kRounding = 2.5e-7f;
 // A corner is none if the outline loses no more than this share of its area without it.
 constexpr float kStraight = 1e-6f;
 // By how much of its area the polygon may differ from the triangles.
@@ -74,14 +76,18 @@ FlatOutlines::FlatOutlines(const FaceClusterTree& tree) : outline_(tree.nodes.si
     if (!is_flat) continue;
     const Frame frame(node.centre, normalize(node.summed_normal));
     flat.clear();
+    float thickness = 0, magnitude = 0;
     for (const vec3& p : points) {
       flat.push_back(frame.flat(p));
-      is_flat &= std::abs(dot(p - frame.origin, frame.n)) <= kThick * node.radius;
+      thickness = std::max(thickness, std::abs(dot(p - frame.origin, frame.n)));
+      magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
-    if (!is_flat) continue;
+    if (thickness > std::max(kThick * node.radius, kRounding * magnitude)) continue;
     const std::vector<vec2> hull = without_straight(convex_hull(flat), kStraight * node.area);
     if (hull.size() < 3 || hull.size() > kMostCarried) continue;
-    for (const vec2& p : hull) hulls[i].push_back(frame.origin + p.x * frame.u + p.y * frame.v);
+    // The vertices themselves: to place them anew at every level would add up roundings.
+    for (const vec2& p : hull)
+      hulls[i].push_back(points[static_cast<size_t>(std::find(flat.begin(), flat.end(), p) - flat.begin())]);
     if (hull.size() > kMostCorners || std::abs(area_of(hull) - node.area) > kFilled * node.area) continue;
     outline_[i] = static_cast<uint32_t>(first_.size() - 1);
     corners_.insert(corners_.end(), hulls[i].begin(), hulls[i].end());

@@ -9,8 +9,8 @@ namespace goldthread {
 
 struct FaceClusterTree;
 
-/// Outlines of those clusters of a tree that fill a convex polygon of few corners in one plane, without hole
-/// or fold, so that the polygon may stand for them.
+/// Outlines of those clusters of a tree that fill a convex polygon of few corners in one plane, as far as
+/// their area and summed normal tell, so that the polygon may stand for them.
 class FlatOutlines {
  public:
   /// The most corners that are kept.

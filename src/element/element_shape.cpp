@@ -333,8 +333,9 @@ uint32_t ElementPool::find_triangle(const Element& cluster, const SurfacePoint& 
     }
     const FaceCluster& node = tree.nodes[ref];
     const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - point.position;
-    const float reach = 1.001f * node.radius * part.scale;
-    if (dot(d, d) > reach * reach || depth + 2 > kStack) continue;
+    // How far outside all that is in there the point must be.
+    const float outside = length(d) - 1.001f * node.radius * part.scale;
+    if (-outside < best || depth + 2 > kStack) continue;
     stack[depth++] = node.child[1];
     stack[depth++] = node.child[0];
   }

@@ -13,12 +13,16 @@ namespace {
 // middle a print is black, and two more no exposure that suits the rest would bring back.
 constexpr float kBlack = 1.0f / 128;
 
-// `ascending`, not empty: where the sum of the cube roots is half of all.
-float middle_of_lightness(const std::vector<float>& ascending) {
+// What is darker may be left out, but no more than this share of the lightness: a window on a bright sky does
+// not make the room around it black.
+constexpr double kMostLeftOut = 0.25;
+
+// `ascending`, not empty: where the sum of the cube roots is `share` of all.
+float at_lightness(const std::vector<float>& ascending, double share) {
   double all = 0, up_to = 0;
   for (const float value : ascending) all += std::cbrt(static_cast<double>(value));
   for (const float value : ascending)
-    if (up_to += std::cbrt(static_cast<double>(value)); up_to >= all / 2) return value;
+    if (up_to += std::cbrt(static_cast<double>(value)); up_to >= share * all) return value;
   return ascending.back();
 }
 
@@ -43,7 +47,8 @@ std::vector<float> lit_luminances(std::vector<float> luminances) {
   std::erase_if(luminances, [](float value) { return !(value > 0) || !std::isfinite(value); });
   if (luminances.empty()) return luminances;
   std::sort(luminances.begin(), luminances.end());
-  const float least = kBlack * middle_of_lightness(luminances);
+  const float least =
+      std::min(kBlack * at_lightness(luminances, 0.5), at_lightness(luminances, kMostLeftOut));
   luminances.erase(luminances.begin(), std::lower_bound(luminances.begin(), luminances.end(), least));
   return luminances;
 }

@@ -19,7 +19,8 @@ struct ToneMap {
 /// Those of `luminances` (any unit) that an eye adapts to, ascending: what is not positive and finite is left
 /// out, and what lies more than seven stops below the middle of the picture's lightness. That middle parts
 /// the sum of the luminances' cube roots (CIE 1976) in half: it is where the picture is light, however much
-/// nearly black there is around, and not on the few pixels of a lamp.
+/// nearly black there is around, and not on the few pixels of a lamp. No more than a quarter of that sum is
+/// left out, however bright the rest: a room past a window on the sky stays.
 std::vector<float> lit_luminances(std::vector<float> luminances);
 
 /// Equation 1 without its delta, over `lit_luminances`: the log average of what is lit, in their unit. 0 of

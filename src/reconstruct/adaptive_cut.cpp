@@ -10,7 +10,8 @@
 namespace goldthread {
 namespace {
 
-// The scene is tested at no fewer places than this, spread by area; a leaf at no more than the second.
+// The scene is tested at no fewer places than this, spread by the area that counts; a leaf at no more than
+// the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
@@ -84,8 +85,9 @@ AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_are
   error.area = std::max(1e-30, static_cast<double>(leaf.area * leaf.coverage));
   // Of many faces one would say little.
   const double least = test.faces > 1 ? 3 : 1;
+  const double counts = error.area * static_cast<double>(solver_.regard().of(leaf));
   const auto places = static_cast<uint32_t>(
-      std::clamp(std::ceil(error.area / unit_area), least, static_cast<double>(kMostTests)) /
+      std::clamp(std::ceil(counts / unit_area), least, static_cast<double>(kMostTests)) /
           (errors_[test.leaf].looks == 0 ? 1 : 2) +
       0.5);
   const LeafFaces faces = faces_of(test);

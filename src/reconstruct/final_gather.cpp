@@ -121,7 +121,8 @@ class PointGather {
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
-    if (count > 0 && has_unlike_sides(s, source, factor)) return add_seen_places(link, source, factor, count);
+    if (count > 0 && has_unlike_sides(s, source, factor))
+      return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);
     if (sight_of(link) == Sight::kClear) {

@@ -292,9 +292,14 @@ Status Comparison::compare_solutions() {
                    "compare solutions of the same geometry"};
   }
   const std::vector<Receiver> receivers =
-      options_.seen
-          ? look(*first->traced, options_.picture_width, options_.picture_height).receivers
-          : random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
+      options_.seen ? look(*first->traced, options_.picture_width, options_.picture_height).receivers
+                    : random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
+  if (options_.seen && receivers.empty())
+    return Error{ErrorCode::kNothingToBake,
+                 "its camera sees no surface that takes light",
+                 options_.first,
+                 {},
+                 "leave --seen out, or turn the camera"};
   std::vector<size_t> which;
   const Result<std::vector<Measured>> places =
       measure(*first, second ? &*second : nullptr, receivers, which, options_.seed);

@@ -107,6 +107,15 @@ TEST(FlatOutlines, NoneOfWhatIsBentOrFolded) {
   EXPECT_TRUE(outline_of_root(build(fold)).empty());
 }
 
+TEST(FlatOutlines, NoneOfWhatIsThickerThanRaysKeepOff) {
+  for (const float uneven : {1e-7f, 1e-4f}) {
+    const auto rough = [&](float x, float y) {
+      return uneven * static_cast<float>((int(8 * x + 0.5f) + int(8 * y + 0.5f)) % 2);
+    };
+    EXPECT_EQ(outline_of_root(build(shapes::grid(8, rough))).size(), uneven < 1e-6f ? 4u : 0u);
+  }
+}
+
 TEST(FlatOutlines, NoneOfMoreCornersThanAreKept) {
   for (const uint32_t corners : {8u, 9u, 60u}) {
     shapes::Soup soup;
@@ -126,7 +135,7 @@ TEST(FlatOutlines, NoneOfMoreCornersThanAreKept) {
 
 TEST(FlatOutlines, SliversAndPointsDoNotHarm) {
   shapes::Soup soup;
-  soup.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-9f, 0}, {0.5f, 1, 0}, {0.5f, 1, 0}};
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0}, {0.5f, 1, 0}, {0.5f, 1, 0}};
   soup.triangle(0, 1, 2);
   soup.triangle(0, 2, 3);
   soup.triangle(2, 1, 4);

@@ -217,6 +217,20 @@ TEST(ElementPool, SamplesKeepOffTheEdges) {
         EXPECT_LT(p.position[axis], 1 - 3e-6f) << u << " " << v;
       }
     }
+  // And of triangles of which no two make a polygon.
+  Random random(6);
+  const auto rough = [&](float, float) { return random.in(0, 0.01f); };
+  Scene uneven;
+  test::add(uneven, shapes::grid(64, rough), test::add(uneven, test::diffuse(0.5f)));
+  const Elements small(std::move(uneven));
+  for (const float u : {0.0f, 1e-7f, 0.3f, 0.99999994f})
+    for (const float v : {0.0f, 1e-7f, 0.6f, 0.99999994f}) {
+      const SurfacePoint p = small.pool->sample_at(small.pool->root(), u, v);
+      for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_GT(p.position[axis], 3e-6f) << u << " " << v;
+        EXPECT_LT(p.position[axis], 1 - 3e-6f) << u << " " << v;
+      }
+    }
 }
 
 TEST(ElementPool, SamplesFillTheTrianglesOfALargeCluster) {

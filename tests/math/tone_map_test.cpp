@@ -72,6 +72,14 @@ TEST(ToneMap, ShadesCountAndLampsInViewDoNotHideThem) {
   EXPECT_NEAR(choose_tone_map(nits).scale, 0.18 / std::exp(with_lamp), 1e-4);
 }
 
+TEST(ToneMap, ARoomPastABrightWindowStaysInThePicture) {
+  // A fifth of the picture outshines the rest 250 times. Not the window alone is exposed for.
+  std::vector<vec3> nits(800, vec3(20));
+  nits.resize(1000, vec3(5000));
+  const double log_mean = (800 * std::log(20.0) + 200 * std::log(5000.0)) / 1000;
+  EXPECT_NEAR(choose_tone_map(nits).scale, 0.18 / std::exp(log_mean), 1e-4);
+}
+
 TEST(ToneMap, WhiteIsNearTheBrightestAndNotTheOutlier) {
   std::vector<vec3> nits(1000);
   for (size_t i = 0; i < nits.size(); ++i) nits[i] = vec3(static_cast<float>(i + 1));

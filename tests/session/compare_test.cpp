@@ -161,6 +161,22 @@ TEST(Compare, WhatTheCameraSees) {
   }
 }
 
+TEST(Compare, ACameraThatSeesNothingIsNamed) {
+  const TempFolder folder;
+  Result<Solution> solution = read_solution(gold(folder, "cornell-box"));
+  ASSERT_TRUE(solution);
+  ASSERT_EQ(solution->scene.cameras.size(), 1u);
+  solution->scene.cameras[0].forward *= -1.0f;
+  CompareOptions options;
+  options.first = folder.path("away.gold");
+  ASSERT_TRUE(write_solution(options.first, *solution));
+  options.reference = options.seen = true;
+  options.samples = 1;
+  const Result<CompareResult> result = compare(options);
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().line(), HasSubstr("camera"));
+}
+
 TEST(Compare, AFurnaceIsRightToTheReferencesNoise) {
   const TempFolder folder;
   CompareOptions options;

@@ -145,7 +145,7 @@ void add_triangle(const PlacedTree& placed, uint32_t triangle, const vec3& x, co
   }
 }
 
-// Descends a face cluster tree from `root`, adding up pieces that are small for their distance.
+// Descends the tree of a face cluster, adding up pieces that are small for their distance.
 template <typename Sum>
 void add_tree(const ElementPool& pool, ElementId source, const PlacedTree& placed, const vec3& x,
               const vec3& n, float horizon_tolerance, Sum& sum) {

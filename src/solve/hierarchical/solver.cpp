@@ -11,6 +11,11 @@ namespace {
 // Feet that no link asked about are cut down to this share of the least area.
 constexpr float kLeastAtHiddenFoot = 0.125f;
 
+// No step is finer than the one before by more than this.
+constexpr double kMostFiner = 256;
+// Where less than this share of what shines into the scene lands, it is dark.
+constexpr double kDark = 1e-4;
+
 }  // namespace
 
 HierarchicalSolver::HierarchicalSolver(const SurfaceSet& surfaces, const RayCaster& caster,
@@ -58,7 +63,9 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   if (pool_.root() == kNoElement || stats_.converged) return false;
   const double landing = static_cast<double>(largest(regarded_power(pool_, state_, regard_)));
   RefineOptions refine_options;
-  refine_options.power_error = bound_ * (stats_.iterations == 0 ? first_power() : landing);
+  const double wanted =
+      bound_ * (stats_.iterations == 0 ? first_power() : std::max(landing, kDark * first_power()));
+  refine_options.power_error = power_error_ = next_power_error(wanted, power_error_);
   refine_options.regard = regard_;
   refine_options.least_area = static_cast<float>(options_.least_area * regarded_area(pool_, regard_));
   refine_options.most_links = options_.most_links;
@@ -66,7 +73,8 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
       refine(pool_, visibility_, links_, feet_, state_, refine_options, cancel, stats_.rays, between_waves);
   stats_.limited |= counters.limited;
   if (pool_.surfaces().has_translucent) cut_sides_alike();
-  const bool last = bound_ <= options_.last_error * 1.0001 || counters.limited;
+  const bool reached = power_error_ <= wanted;
+  const bool last = (reached && bound_ <= options_.last_error * 1.0001) || counters.limited;
   if (last) cut_at_feet(kLeastAtHiddenFoot * refine_options.least_area);
   if (last) measure_all(pool_, visibility_, links_, state_, refine_options, cancel, stats_.rays);
   // The first steps only have to find where the light goes; the last has to settle.
@@ -74,7 +82,7 @@ bool HierarchicalSolver::step(const CancelToken& cancel) {
   if (cancel.cancelled()) return false;
   stats_.epsilon = bound_;
   stats_.converged = last;
-  bound_ = std::max(options_.last_error, bound_ * options_.error_ratio);
+  if (reached) bound_ = std::max(options_.last_error, bound_ * options_.error_ratio);
   return !last;
 }
 
@@ -145,6 +153,10 @@ double HierarchicalSolver::share_done() const {
 uint64_t HierarchicalSolver::memory_bytes() const {
   return pool_.memory_bytes() + links_.memory_bytes() +
          state_.radiosity.capacity() * (4 * sizeof(vec3) + 3 * sizeof(float) + sizeof(mat3));
+}
+
+double next_power_error(double wanted, double before) {
+  return std::max(wanted, before / kMostFiner);
 }
 
 vec3 emitted_power(const ElementPool& pool) {

@@ -139,39 +139,6 @@ TEST(SolvedSky, ASunInThePictureCastsAShadow) {
   EXPECT_NEAR(below_half_a_roof(sky), truth, 0.02 * truth);
 }
 
-/// A room of 4 x 4 x 3 m with a hole of 20 cm in the middle of its roof.
-Scene room_with_a_hole() {
-  Scene scene;
-  const uint32_t paint = test::add(scene, test::diffuse(0.5f));
-  const vec3 o(0), x(4, 0, 0), y(0, 3, 0), z(0, 0, 4);
-  for (const shapes::Soup& wall :
-       {test::parallelogram(o, z, x), test::parallelogram(o, x, y), test::parallelogram(z, y, x),
-        test::parallelogram(o, y, z), test::parallelogram(x, z, y)})
-    test::add(scene, wall, paint);
-  const vec3 short_x(1.9f, 0, 0), short_z(0, 0, 1.9f), hole_x(0.2f, 0, 0);
-  for (const shapes::Soup& roof :
-       {test::parallelogram(y, short_x, z), test::parallelogram(y + vec3(2.1f, 0, 0), short_x, z),
-        test::parallelogram(y + short_x, hole_x, short_z),
-        test::parallelogram(y + short_x + vec3(0, 0, 2.1f), hole_x, short_z)})
-    test::add(scene, roof, paint);
-  scene.sky.radiance = vec3(1000);
-  return scene;
-}
-
-TEST(Sky, AStepThatFindsNoLightDoesNotOpenEverything) {
-  for (const uint32_t seed : {0u, 1u, 2u, 3u}) {
-    SolveOptions options;
-    options.last_error = 1e-3;
-    options.least_area = 1e-4;
-    options.seed = seed;
-    Solved solved(room_with_a_hole(), options);
-    solved.solve();
-    EXPECT_TRUE(solved.solver->stats().converged);
-    EXPECT_LT(solved.solver->links().all().size(), 100000u) << seed;
-    EXPECT_GT(summarise(solved, [&](ElementId id) { return solved.state().irradiance[id].y; }).mean, 0);
-  }
-}
-
 TEST(Sky, AStepIsFinerThanTheOneBeforeByALimit) {
   EXPECT_EQ(next_power_error(3, 100), 3);
   EXPECT_EQ(next_power_error(0, 256), 1);

@@ -39,12 +39,6 @@ class Descent {
   float u_, step_ = 0x1p-24f;
 };
 
-vec3 polygon_normal(const ElementPolygon& p) {
-  vec3 sum(0);
-  for (size_t i = 1; i + 1 < p.count; ++i) sum += area_vector(p.corners[0], p.corners[i], p.corners[i + 1]);
-  return normalize_or(sum, vec3(0, 1, 0));
-}
-
 }  // namespace
 
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
@@ -69,12 +63,6 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
   };
   ClusterRef ref = element.shape;
   while (!is_triangle(ref)) {
-    if (!tree.outlines.of(ref).empty()) {
-      const ElementPolygon polygon = outline(element, ref);
-      SurfacePoint point = sample_polygon(polygon, polygon_normal(polygon), descent.rest(v), v);
-      point.triangle = kSomeTriangle;
-      return point;
-    }
     const FaceCluster& node = tree.nodes[ref];
     const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
     ref = node.child[descent.first(share) ? 0 : 1];
@@ -144,7 +132,6 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
     ClusterRef ref = element.shape;
     Descent descent(u);
     while (!is_triangle(ref)) {
-      if (!tree.outlines.of(ref).empty()) break;
       const FaceCluster& node = tree.nodes[ref];
       const float a = pull(node.child[0]), b = pull(node.child[1]);
       const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
@@ -153,12 +140,14 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
       chance *= first ? share : 1 - share;
     }
     u = descent.rest(v);
-    triangle = is_triangle(ref) ? triangle_of(ref) : kSomeTriangle;
-    polygon = is_triangle(ref) ? triangle_polygon(element, triangle) : outline(element, ref);
+    triangle = triangle_of(ref);
+    polygon = triangle_polygon(element, triangle);
   }
   std::array<vec3, kMaxPolygon> from_x;
   for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
-  const vec3 normal = polygon_normal(polygon);
+  const vec3 area =
+      0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
+  const vec3 normal = normalize_or(area, vec3(0, 1, 0));
   weight = 0;
   float angle = 0, whole = 0;
   for (size_t i = 1; i + 1 < polygon.count; ++i) {

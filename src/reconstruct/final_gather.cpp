@@ -36,9 +36,6 @@ constexpr uint32_t kFewPlaces = 4;
 
 // A source within this many of its radii is near.
 constexpr float kNear = 2;
-// A cluster whose normals lie within this cosine (45 degrees) of their mean has no faces turned away from
-// each other.
-constexpr float kTurned = 0.7071f;
 // What a near source's unevenness may amount to, as a share of the receiver's light.
 constexpr float kUneven = 0.02f;
 
@@ -83,19 +80,12 @@ class PointGather {
   static vec3 tint_of(const Link& link) { return link.tint.is_white() ? vec3(1) : link.tint.colour(); }
 
   void add_modelled(const Link& link, const Element& r, const vec3& b) {
-    // What a receiver gets that turns many ways is a mean over all of it: some of it may not face the source.
-    if (!r.flat && is_below_horizon(pool_[link.source])) return;
     const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
                                   : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
     sum_ += std::max(0.0f, modelled) * b * tint_of(link);
     if (!has_solid_angle(pool_[link.source].kind)) return;
     faced_ += link.unoccluded;
     seen_ += link.mean;
-  }
-
-  // Whether all of a surface lies behind the plane on which light is gathered.
-  bool is_below_horizon(const Element& source) const {
-    return is_surface(source.kind) && dot(source.centre - x_, n_) < -source.radius;
   }
 
   void add_source(const Link& link, ElementId source, const vec3& b) {
@@ -121,8 +111,6 @@ class PointGather {
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
-    if (count > 0 && has_unlike_sides(s, source, factor))
-      return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);
     if (sight_of(link) == Sight::kClear) {
@@ -173,15 +161,6 @@ class PointGather {
     variance_ += std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
     faced_ += factor;
     seen_ += share.seen / all * factor;
-  }
-
-  // Whether a source may have faces turned away from each other, and its leaves are of unlike light: of a
-  // window that is lit from within a point outside sees the dark faces alone, which their mean says nothing
-  // of.
-  bool has_unlike_sides(const Element& s, ElementId source, float factor) const {
-    const RadiosityState& state = solver_.state();
-    return s.kind == ElementKind::kCluster && s.first_child != kNoElement && s.cone_cosine < kTurned &&
-           (state.high[source] - state.low[source]) * factor > kUneven * whole_;
   }
 
   // Where it is known how light varies within leaves, reading it is dearer only by the rays.

@@ -23,7 +23,7 @@ constexpr float kWall = 0.15f;
 // Lines this near, as a share of the radius, are one.
 constexpr float kSameLine = 1e-3f;
 // What hovers no higher than this, as a share of the radius, stands on the piece: little light gets under it.
-constexpr float kHovers = 0.05f;
+constexpr float kHovers = 0.02f;
 // What shines and is smaller than this for its distance casts shadows that have an edge.
 constexpr float kSmall = 0.1f;
 // Places from which a lamp is looked for.

@@ -13,8 +13,9 @@ constexpr float kLeastAtHiddenFoot = 0.125f;
 
 // No step is finer than the one before by more than this.
 constexpr double kMostFiner = 256;
-// Where less than this share of what shines into the scene lands, it is dark.
-constexpr double kDark = 1e-4;
+// Where less than this share of what shines into the scene lands, it is dark. So small, since on a plain of
+// kilometres next to all that shines into its box lands where it hardly counts (Regard).
+constexpr double kDark = 1e-12;
 
 }  // namespace
 

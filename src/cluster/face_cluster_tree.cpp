@@ -10,6 +10,7 @@ FaceClusterTree build_face_clusters(TriangleMesh mesh, const FaceClusterOptions&
   MergeForest forest = merge_triangles(mesh, options);
   FaceClusterTree tree = lay_out(std::move(mesh), std::move(forest));
   fill_bounds(tree);
+  tree.outlines = FlatOutlines(tree);
   return tree;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cluster/flat_outlines.h"
 #include "mesh/triangle_mesh.h"
 
 namespace goldthread {
@@ -36,6 +37,7 @@ struct FaceClusterTree {
   TriangleMesh mesh;               ///< triangles reordered so that each cluster is a range
   std::vector<FaceCluster> nodes;  ///< depth first: child 0 of node i, when a node, is i + 1
   std::vector<ClusterRef> roots;   ///< one a connected component, in order of their triangle ranges
+  FlatOutlines outlines;           ///< of those nodes that are convex polygons
 };
 
 struct FaceClusterOptions {

@@ -64,11 +64,14 @@ struct ElementPassage {
   ElementId twin = kNoElement;  ///< the same piece of the other side; kNoElement where that is not cut so far
 };
 
+/// The one of a cluster's triangles on which the point lies.
+constexpr uint32_t kSomeTriangle = 0xffffffffu;
+
 /// A point on an element's real surface.
 struct SurfacePoint {
   vec3 position{0};
   vec3 normal{0};         ///< unit, on the element's side
-  uint32_t triangle = 0;  ///< of the part's tree, for points on clusters and triangles
+  uint32_t triangle = 0;  ///< of the part's tree, for points on clusters and triangles; or kSomeTriangle
 };
 
 constexpr uint32_t kStoredSamples = 16;
@@ -153,6 +156,11 @@ class ElementPool {
   ElementPolygon polygon(ElementId cluster, uint32_t triangle) const {
     return triangle_polygon(elements_[cluster], triangle);
   }
+  /// RMS contrast of what a face cluster, triangle or patch reflects: the standard deviation of its
+  /// reflectance's luminance over the mean, by sixteen places; 0 of one colour and of black.
+  float texture_contrast(ElementId id) const;
+  /// The convex polygon that an inner node below a face cluster is; without corners when it is none.
+  ElementPolygon outline(ElementId cluster, ClusterRef node) const;
   /// Unit corner directions of a sky element, wound as sky_form_factor wants them.
   const std::array<vec3, 3>& sky_corners(ElementId id) const { return sky_cell(id).corners; }
   /// SkyCells::relative_luminance.
@@ -211,6 +219,9 @@ class ElementPool {
                           bool second) const;
   ElementPolygon triangle_polygon(const Element& element, uint32_t triangle) const;
   ElementPolygon patch_polygon(const Element& element) const;
+  ElementPolygon outline(const Element& element, ClusterRef node) const;
+  uint32_t find_triangle(const Element& cluster, const SurfacePoint& point) const;
+  Paint paint_of(const Part& part, uint32_t triangle, const vec3& place) const;
 
   const SurfaceSet* set_;
   std::vector<Element> elements_;

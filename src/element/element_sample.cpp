@@ -13,6 +13,10 @@ namespace {
 // spherical triangle are lost in rounding.
 constexpr float kSmallSolidAngle = 0.05f;
 
+// Points stay a hair's breadth from the edges, as a share of the way to the middle: on one, or by rounding
+// past it, a point would lie in the wall that stands there or even behind it as much as before it.
+constexpr float kDrawnIn = 1e-3f;
+
 // Descends a binary tree by chance: one number in [0, 1) makes all the choices, and what it has left serves
 // within the leaf. Twenty choices use up nearly all bits of a float: those that are gone are made up in the
 // end, or a million triangles would be sampled along a few lines each, some of them edges.
@@ -39,6 +43,12 @@ class Descent {
   float u_, step_ = 0x1p-24f;
 };
 
+vec3 polygon_normal(const ElementPolygon& p) {
+  vec3 sum(0);
+  for (size_t i = 1; i + 1 < p.count; ++i) sum += area_vector(p.corners[0], p.corners[i], p.corners[i + 1]);
+  return normalize_or(sum, vec3(0, 1, 0));
+}
+
 }  // namespace
 
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
@@ -63,6 +73,12 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
   };
   ClusterRef ref = element.shape;
   while (!is_triangle(ref)) {
+    if (!tree.outlines.of(ref).empty()) {
+      const ElementPolygon polygon = outline(element, ref);
+      SurfacePoint point = sample_polygon(polygon, polygon_normal(polygon), descent.rest(v), v);
+      point.triangle = kSomeTriangle;
+      return point;
+    }
     const FaceCluster& node = tree.nodes[ref];
     const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
     ref = node.child[descent.first(share) ? 0 : 1];
@@ -93,9 +109,6 @@ SurfacePoint ElementPool::sample_polygon(const ElementPolygon& polygon, const ve
   while (i + 2 < polygon.count && target >= areas[i]) target -= areas[i++];
   const float s = std::sqrt(std::clamp(areas[i] > 0 ? target / areas[i] : 0.5f, 0.0f, 1.0f));
   const vec3 &b = polygon.corners[i], &c = polygon.corners[i + 1];
-  // A hair's breadth from the edges: on one, a point would lie in the wall that stands there as much as
-  // before it.
-  constexpr float kDrawnIn = 1e-3f;
   const vec3 position = (1 - s) * a + s * ((1 - v) * b + v * c), centroid = (a + b + c) / 3.0f;
   return {position + kDrawnIn * (centroid - position), normal};
 }
@@ -132,6 +145,7 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
     ClusterRef ref = element.shape;
     Descent descent(u);
     while (!is_triangle(ref)) {
+      if (!tree.outlines.of(ref).empty()) break;
       const FaceCluster& node = tree.nodes[ref];
       const float a = pull(node.child[0]), b = pull(node.child[1]);
       const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
@@ -140,14 +154,12 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
       chance *= first ? share : 1 - share;
     }
     u = descent.rest(v);
-    triangle = triangle_of(ref);
-    polygon = triangle_polygon(element, triangle);
+    triangle = is_triangle(ref) ? triangle_of(ref) : kSomeTriangle;
+    polygon = is_triangle(ref) ? triangle_polygon(element, triangle) : outline(element, ref);
   }
   std::array<vec3, kMaxPolygon> from_x;
   for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
-  const vec3 area =
-      0.5f * cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
-  const vec3 normal = normalize_or(area, vec3(0, 1, 0));
+  const vec3 normal = polygon_normal(polygon);
   weight = 0;
   float angle = 0, whole = 0;
   for (size_t i = 1; i + 1 < polygon.count; ++i) {
@@ -166,6 +178,9 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
     weight = std::max(0.0f, dot(d, n)) * plane * whole / (squared * squared * chance + 1e-30f);
     return point;
   }
+  vec3 middle(0);
+  for (size_t i = 0; i < polygon.count; ++i) middle += from_x[i] / static_cast<float>(polygon.count);
+  for (size_t i = 0; i < polygon.count; ++i) from_x[i] += kDrawnIn * (middle - from_x[i]);
   const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
   const float towards = -dot(direction, normal), here = dot(direction, n);
   if (towards <= 1e-5f) return {polygon.corners[0], normal};

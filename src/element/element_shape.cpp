@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "element/element_pool.h"
 #include "element/paint.h"
+#include "math/colour.h"
 #include "math/spherical_triangle.h"
 
 namespace goldthread {
@@ -148,10 +149,6 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   const Patch& patch = patches_[number];
   const Part& part = set_->parts[patch.part];
   const std::span<const vec3> corners(&corners_[patch.first_corner], patch.corners);
-  const UVec3& c = set_->tree(part).mesh.triangles[patch.triangle];
-  const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
-  const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2);
-  const float scale = 1 / std::max(dot(n, n), 1e-30f);
   Paint paint{vec3(0), vec3(0), 0, vec3(0), vec3(0)};
   constexpr uint32_t kPoints = 16;
   ElementPolygon polygon;
@@ -159,10 +156,7 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   std::copy(corners.begin(), corners.end(), polygon.corners.begin());
   for (uint32_t i = 0; i < kPoints; ++i) {
     const UnitSquarePoint uv = r2_point(i, number);
-    const vec3 p = sample_polygon(polygon, vec3(0), uv.u, uv.v).position - a;
-    const vec2 weights =
-        glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
-    const Paint one = paint_at(*set_, part, patch.triangle, weights);
+    const Paint one = paint_of(part, patch.triangle, sample_polygon(polygon, vec3(0), uv.u, uv.v).position);
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
@@ -170,6 +164,36 @@ Paint ElementPool::patch_paint(uint32_t number) const {
     paint.transmittance += one.transmittance / static_cast<float>(kPoints);
   }
   return paint;
+}
+
+// The paint of a triangle at a place on it.
+Paint ElementPool::paint_of(const Part& part, uint32_t triangle, const vec3& place) const {
+  const UVec3& c = set_->tree(part).mesh.triangles[triangle];
+  const vec3 &a = part.positions[c.x], &b = part.positions[c.y], &d = part.positions[c.z];
+  const vec3 e1 = b - a, e2 = d - a, n = cross(e1, e2), p = place - a;
+  const float scale = 1 / std::max(dot(n, n), 1e-30f);
+  const vec2 weights = glm::clamp(vec2(dot(cross(p, e2), n), dot(cross(e1, p), n)) * scale, vec2(0), vec2(1));
+  return paint_at(*set_, part, triangle, weights);
+}
+
+float ElementPool::texture_contrast(ElementId id) const {
+  const Element& element = elements_[id];
+  const Part& part = set_->parts[element.part];
+  if (part.triangle_reflectance.empty()) return 0;
+  constexpr uint32_t kPlaces = 16;
+  float sum = 0, squares = 0;
+  for (uint32_t i = 0; i < kPlaces; ++i) {
+    const UnitSquarePoint uv = r2_point(i, id);
+    const SurfacePoint point = sample_at(id, uv.u, uv.v);
+    const uint32_t triangle = element.kind == ElementKind::kPatch ? patches_[element.shape].triangle
+                              : point.triangle == kSomeTriangle   ? find_triangle(element, point)
+                                                                  : point.triangle;
+    const float value = luminance(paint_of(part, triangle, point.position).reflectance);
+    sum += value;
+    squares += value * value;
+  }
+  const float mean = sum / kPlaces;
+  return mean > 0 ? std::sqrt(std::max(0.0f, squares / kPlaces - mean * mean)) / mean : 0.0f;
 }
 
 // What fill_paint is to an element, for its passage.
@@ -258,7 +282,11 @@ float depth_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) 
 
 }  // namespace
 
-ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
+ElementId ElementPool::deepest(ElementId id, const SurfacePoint& at) const {
+  SurfacePoint point = at;
+  if (point.triangle == kSomeTriangle && elements_[id].kind == ElementKind::kCluster &&
+      elements_[id].first_child != kNoElement)
+    point.triangle = find_triangle(elements_[id], point);
   while (elements_[id].first_child != kNoElement) {
     const Element& e = elements_[id];
     const ElementId child = e.first_child;
@@ -280,6 +308,52 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& point) const {
     id = first ? child : child + 1;
   }
   return id;
+}
+
+// The triangle of a cluster that holds a point, or comes nearest to: of rounding's making there may be none.
+uint32_t ElementPool::find_triangle(const Element& cluster, const SurfacePoint& point) const {
+  const Part& part = set_->parts[cluster.part];
+  const FaceClusterTree& tree = set_->tree(part);
+  constexpr size_t kStack = 256;
+  std::array<ClusterRef, kStack> stack;
+  size_t depth = 0;
+  stack[depth++] = cluster.shape;
+  uint32_t found = tree.nodes[cluster.shape].first;
+  float best = std::numeric_limits<float>::lowest();
+  while (depth > 0 && best < 0) {
+    const ClusterRef ref = stack[--depth];
+    if (is_triangle(ref)) {
+      const float within =
+          depth_within(triangle_polygon(cluster, triangle_of(ref)), point.normal, point.position);
+      if (within > best) {
+        best = within;
+        found = triangle_of(ref);
+      }
+      continue;
+    }
+    const FaceCluster& node = tree.nodes[ref];
+    const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - point.position;
+    // How far outside all that is in there the point must be.
+    const float outside = length(d) - 1.001f * node.radius * part.scale;
+    if (-outside < best || depth + 2 > kStack) continue;
+    stack[depth++] = node.child[1];
+    stack[depth++] = node.child[0];
+  }
+  return found;
+}
+
+ElementPolygon ElementPool::outline(ElementId cluster, ClusterRef node) const {
+  return outline(elements_[cluster], node);
+}
+
+ElementPolygon ElementPool::outline(const Element& element, ClusterRef node) const {
+  const Part& part = set_->parts[element.part];
+  ElementPolygon polygon;
+  for (const vec3& corner : set_->tree(part).outlines.of(node))
+    polygon.corners[polygon.count++] = vec3(part.to_world * vec4(corner, 1));
+  if (orientation(part, element) < 0)
+    std::reverse(polygon.corners.data(), polygon.corners.data() + polygon.count);
+  return polygon;
 }
 
 ElementPolygon ElementPool::triangle_polygon(const Element& element, uint32_t triangle) const {

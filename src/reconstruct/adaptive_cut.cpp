@@ -10,7 +10,8 @@
 namespace goldthread {
 namespace {
 
-// The scene is tested at no fewer places than this, spread by area; a leaf at no more than the second.
+// The scene is tested at no fewer places than this, spread by the area that counts; a leaf at no more than
+// the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
@@ -84,8 +85,9 @@ AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_are
   error.area = std::max(1e-30, static_cast<double>(leaf.area * leaf.coverage));
   // Of many faces one would say little.
   const double least = test.faces > 1 ? 3 : 1;
+  const double counts = error.area * static_cast<double>(solver_.regard().of(leaf));
   const auto places = static_cast<uint32_t>(
-      std::clamp(std::ceil(error.area / unit_area), least, static_cast<double>(kMostTests)) /
+      std::clamp(std::ceil(counts / unit_area), least, static_cast<double>(kMostTests)) /
           (errors_[test.leaf].looks == 0 ? 1 : 2) +
       0.5);
   const LeafFaces faces = faces_of(test);
@@ -115,7 +117,7 @@ AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_are
 void AdaptiveGather::test_leaves(bool again) {
   errors_.resize(solver_.pool().size());
   const std::vector<Test> tests = list_tests(again);
-  const double unit_area = solver_.pool().surfaces().area / kLeastTests;
+  const double unit_area = regarded_area(solver_.pool(), solver_.regard()) / kLeastTests;
   std::atomic<uint64_t> rays{0}, nanoseconds{0};
   parallel_for(
       tests.size(),
@@ -149,7 +151,9 @@ bool AdaptiveGather::cut() {
   const double mean = light / area, whole = regarded_area(pool, solver_.regard());
   // What counts of a leaf's error.
   const auto counted = [&](ElementId id) {
-    const double weight = weight_of_darkness(adapted_light(pool, solver_.state(), id, whole), mean);
+    if (!(errors_[id].squares() > 0)) return 0.0;
+    const double weight = weight_of_darkness(adapted_light(pool, solver_.state(), id, whole), mean) *
+                          weight_of_masking(static_cast<double>(pool.texture_contrast(id)));
     return errors_[id].squares() * regarded[id] * weight * weight;
   };
   std::vector<ElementId> worst;

@@ -36,6 +36,9 @@ constexpr uint32_t kFewPlaces = 4;
 
 // A source within this many of its radii is near.
 constexpr float kNear = 2;
+// A cluster whose normals lie within this cosine (45 degrees) of their mean has no faces turned away from
+// each other.
+constexpr float kTurned = 0.7071f;
 // What a near source's unevenness may amount to, as a share of the receiver's light.
 constexpr float kUneven = 0.02f;
 
@@ -80,12 +83,19 @@ class PointGather {
   static vec3 tint_of(const Link& link) { return link.tint.is_white() ? vec3(1) : link.tint.colour(); }
 
   void add_modelled(const Link& link, const Element& r, const vec3& b) {
+    // What a receiver gets that turns many ways is a mean over all of it: some of it may not face the source.
+    if (!r.flat && is_below_horizon(pool_[link.source])) return;
     const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
                                   : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
     sum_ += std::max(0.0f, modelled) * b * tint_of(link);
     if (!has_solid_angle(pool_[link.source].kind)) return;
     faced_ += link.unoccluded;
     seen_ += link.mean;
+  }
+
+  // Whether all of a surface lies behind the plane on which light is gathered.
+  bool is_below_horizon(const Element& source) const {
+    return is_surface(source.kind) && dot(source.centre - x_, n_) < -source.radius;
   }
 
   void add_source(const Link& link, ElementId source, const vec3& b) {
@@ -111,6 +121,8 @@ class PointGather {
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
+    if (count > 0 && (brings > whole_ || has_unlike_sides(s)) && is_unlike(s, source, factor))
+      return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);
     if (sight_of(link) == Sight::kClear) {
@@ -151,8 +163,13 @@ class PointGather {
       }
     }
     const float all = share.seen + share.hidden;
-    if (!(all > 0)) {  // a silhouette: as the link has it
-      sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source] * tint_of(link);
+    if (!(all > 0)) {  // all places happen to be turned away: of a wall's far side its mean would tell
+      const ElementId child = pool_[source].first_child;
+      if (child != kNoElement) {
+        for (uint32_t c = 0; c < 2; ++c) add_source(link, child + c, light_.shown[child + c]);
+      } else {  // a silhouette: as the link has it
+        sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source] * tint_of(link);
+      }
       return;
     }
     const float scale = std::min(factor, 1.0f) / all;
@@ -161,6 +178,19 @@ class PointGather {
     variance_ += std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
     faced_ += factor;
     seen_ += share.seen / all * factor;
+  }
+
+  // Whether a source may have faces turned away from each other: of a window that is lit from within a point
+  // outside sees the dark ones alone.
+  static bool has_unlike_sides(const Element& s) {
+    return s.kind == ElementKind::kCluster && s.cone_cosine < kTurned;
+  }
+
+  // Whether the leaves of a source differ so much that their mean says little of what is seen.
+  bool is_unlike(const Element& s, ElementId source, float factor) const {
+    if (!is_surface(s.kind) || s.kind == ElementKind::kVolume || s.first_child == kNoElement) return false;
+    const RadiosityState& state = solver_.state();
+    return (state.high[source] - state.low[source]) * factor > kUneven * whole_;
   }
 
   // Where it is known how light varies within leaves, reading it is dearer only by the rays.

@@ -137,10 +137,19 @@ vec3 KeyPoints::modelled(const Leaf& leaf, uint32_t point) const {
 
 vec3 KeyPoints::within(const Leaf& leaf, uint32_t point, const std::vector<vec3>& light) const {
   const float radius = std::max(solver_.pool()[leaf.id].radius, 1e-20f);
+  const auto key_at = [&](uint32_t k) { return leaf_keys_[leaf.first_key + k]; };
+  // The two sides of a door are a cluster, too: what falls on the one says nothing of the other. Few leaves
+  // have a point that all keys are turned away from.
+  const auto turned_away = [&](uint32_t key) {
+    return dot(points_.points[key].normal, points_.points[point].normal) <= 0;
+  };
+  bool all_turned = true;
+  for (uint32_t k = 0; k < leaf.key_count && all_turned; ++k) all_turned = turned_away(key_at(k));
   vec3 sum(0);
   float total = 0;
-  for (uint32_t k = leaf.first_key; k < leaf.first_key + leaf.key_count; ++k) {
-    const uint32_t key = leaf_keys_[k];
+  for (uint32_t k = 0; k < leaf.key_count; ++k) {
+    const uint32_t key = key_at(k);
+    if (!all_turned && turned_away(key)) continue;
     const vec3 d = (points_.points[key].position - points_.points[point].position) / radius;
     // Two points of a crease share their place; what keeps them apart is that they face different ways.
     const vec3 turn = points_.points[key].normal - points_.points[point].normal;

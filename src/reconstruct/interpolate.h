@@ -24,8 +24,8 @@ class KeyPoints {
 
   /// Fills every point that is no key. `light` holds the gathered irradiance at the keys. Within a leaf, what
   /// the keys have beyond the leaf's own irradiance vector turned to their normals is interpolated by inverse
-  /// distance and added to that vector turned to the point's normal; a point of several leaves takes their
-  /// mean, so that no seam shows.
+  /// distance and added to that vector turned to the point's normal; keys that face away from the point tell
+  /// it nothing, unless all do. A point of several leaves takes their mean, so that no seam shows.
   void interpolate(std::vector<vec3>& light) const;
 
  private:

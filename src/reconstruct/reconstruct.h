@@ -15,7 +15,9 @@ struct ReconstructOptions {
   uint32_t light_rays = 128;  ///< shadow rays for a link that brings all of a vertex's light; less pro rata
   float ray_share =
       0.01f;  ///< links that bring less than this share use the visibility that they were sampled with
-  double error = 0.06;  ///< root mean square by area of what lies between vertices, over mean light
+  /// Root mean square of what lies between vertices, over mean light: by area as far as it counts (Regard),
+  /// more in the dark and less on textures (weight_of_darkness, weight_of_masking).
+  double error = 0.06;
   double growth = 3;  ///< no more is cut once so many times the work of the solver's own leaves has been done
   std::function<bool()> full;  ///< asked before every round of cuts: true when there is no room for more
   double least_area = 5e-7;    ///< nothing is cut below this share of the scene's area

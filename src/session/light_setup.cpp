@@ -99,7 +99,7 @@ uint64_t memory_bytes(const SurfaceSet& surfaces) {
   for (const FaceClusterTree& tree : surfaces.trees)
     bytes += tree.nodes.capacity() * sizeof(FaceCluster) + tree.roots.capacity() * sizeof(ClusterRef) +
              tree.mesh.positions.capacity() * sizeof(vec3) + tree.mesh.triangles.capacity() * sizeof(UVec3) +
-             tree.mesh.source_triangles.capacity() * sizeof(uint32_t);
+             tree.mesh.source_triangles.capacity() * sizeof(uint32_t) + tree.outlines.memory_bytes();
   for (const Part& part : surfaces.parts)
     bytes += sizeof(Part) + part.positions.capacity() * sizeof(vec3) +
              (part.triangle_reflectance.capacity() + part.triangle_exitance.capacity()) * sizeof(vec3) +

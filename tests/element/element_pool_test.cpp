@@ -217,12 +217,53 @@ TEST(ElementPool, SamplesKeepOffTheEdges) {
         EXPECT_LT(p.position[axis], 1 - 3e-6f) << u << " " << v;
       }
     }
+  // And of triangles of which no two make a polygon.
+  Random random(6);
+  const auto rough = [&](float, float) { return random.in(0, 0.01f); };
+  Scene uneven;
+  test::add(uneven, shapes::grid(64, rough), test::add(uneven, test::diffuse(0.5f)));
+  const Elements small(std::move(uneven));
+  for (const float u : {0.0f, 1e-7f, 0.3f, 0.99999994f})
+    for (const float v : {0.0f, 1e-7f, 0.6f, 0.99999994f}) {
+      const SurfacePoint p = small.pool->sample_at(small.pool->root(), u, v);
+      for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_GT(p.position[axis], 3e-6f) << u << " " << v;
+        EXPECT_LT(p.position[axis], 1 - 3e-6f) << u << " " << v;
+      }
+    }
+}
+
+TEST(ElementPool, SamplesTowardsAPlaceKeepOffTheEdges) {
+  // Seen at a grazing angle, a direction's rounding is far along the plane.
+  Scene scene;
+  test::add(scene, test::parallelogram({0, 0, 0}, {0, 0, 8}, {4, 0, 0}),
+            test::add(scene, test::diffuse(0.5f)));
+  const Elements elements(std::move(scene));
+  const ElementPool& pool = *elements.pool;
+  const ElementId floor = pool.surface_roots()[0];
+  Random random(8);
+  int drawn = 0;
+  for (int k = 0; k < 200000; ++k) {
+    const vec3 x(-random.in(0.1f, 3), random.in(0.05f, 0.5f), random.in(1, 7));
+    float weight = 0;
+    const SurfacePoint y = pool.sample_towards(floor, x, {1, 0, 0}, random.in(0, 1), random.in(0, 1), weight);
+    if (!(weight > 0)) continue;
+    ++drawn;
+    ASSERT_GT(y.position.x, 0) << x.x << " " << x.y << " " << x.z;
+    ASSERT_LT(y.position.x, 4) << x.x << " " << x.y << " " << x.z;
+    ASSERT_GT(y.position.z, 0) << x.x << " " << x.y << " " << x.z;
+    ASSERT_LT(y.position.z, 8) << x.x << " " << x.y << " " << x.z;
+  }
+  EXPECT_GT(drawn, 100000);
 }
 
 TEST(ElementPool, SamplesFillTheTrianglesOfALargeCluster) {
   // Some 330,000 triangles take 18 of the 24 bits of u: the other six would be 64 places in each.
   Scene scene;
-  test::add(scene, shapes::flat_grid(405), test::add(scene, test::diffuse(0.5f)));
+  // Rough: hardly any two lie in a plane, of which a place within would be drawn instead.
+  Random random(5);
+  const auto rough = [&](float, float) { return random.in(0, 0.001f); };
+  test::add(scene, shapes::grid(405, rough), test::add(scene, test::diffuse(0.5f)));
   const Elements elements(std::move(scene));
   const ElementPool& pool = *elements.pool;
   const Part& part = elements.set->parts[0];
@@ -232,12 +273,43 @@ TEST(ElementPool, SamplesFillTheTrianglesOfALargeCluster) {
   for (uint32_t i = 0; i < 4096; ++i) {
     const UnitSquarePoint uv = r2_point(i, 7);
     const SurfacePoint p = pool.sample_at(pool.root(), uv.u, uv.v);
+    if (p.triangle == kSomeTriangle) continue;
     const UVec3& t = mesh.triangles[p.triangle];
     const vec3 &a = part.positions[t.x], &b = part.positions[t.y], &c = part.positions[t.z];
     const float height = length(area_vector(p.position, b, c)) / length(area_vector(a, b, c));
     places.insert(int((1 - height) * (1 - height) * 2000));
   }
   EXPECT_GT(places.size(), 1500u);
+}
+
+TEST(ElementPool, APointOfAFlatClusterIsFoundInTheLeafThatHoldsIt) {
+  // Walls are sampled as the polygons that they are, whatever their triangles.
+  Elements elements(four_boxes(true));
+  elements.expand(9);
+  const ElementPool& pool = *elements.pool;
+  uint32_t tried = 0, of_some_triangle = 0;
+  const auto expect_found = [&](ElementId id, const SurfacePoint& p) {
+    const Element& leaf = pool[pool.deepest(id, p)];
+    ASSERT_EQ(leaf.first_child, kNoElement);
+    ASSERT_LE(length(p.position - leaf.centre), 1.001f * leaf.radius + 1e-4f);
+    ASSERT_GT(dot(p.normal, normalize(leaf.summed_normal)), 0.999f);
+    ++tried;
+    of_some_triangle += p.triangle == kSomeTriangle;
+  };
+  for (ElementId id = 0; id < pool.size(); ++id) {
+    const Element& e = pool[id];
+    if (e.kind != ElementKind::kCluster || e.first_child == kNoElement) continue;
+    const vec3 before = e.centre + 0.7f * e.radius * normalize_or(e.summed_normal, vec3(0, 0, 1));
+    for (uint32_t i = 0; i < 16; ++i) {
+      const UnitSquarePoint uv = r2_point(i, id);
+      expect_found(id, pool.sample_at(id, uv.u, uv.v));
+      float weight = 0;
+      const SurfacePoint towards = pool.sample_towards(id, before, vec3(0, 0, 1), uv.u, uv.v, weight);
+      if (weight > 0) expect_found(id, towards);
+    }
+  }
+  EXPECT_GT(tried, 1000u);
+  EXPECT_GT(of_some_triangle, tried / 2);
 }
 
 TEST(ElementPool, StoredSamplesStandForEqualAreas) {

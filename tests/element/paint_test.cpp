@@ -3,6 +3,7 @@
 
 #include "element/paint.h"
 #include "element/small_elements.h"
+#include "math/colour.h"
 
 namespace goldthread {
 namespace {
@@ -131,6 +132,23 @@ TEST(Paint, VertexColoursMultiply) {
   EXPECT_NEAR(root.reflectance.x, 0.4f, 0.01f);
   EXPECT_NEAR(root.reflectance.y, 0.4f, 1e-5f);
   EXPECT_NEAR(root.reflectance.z, 0.8f, 1e-5f);
+}
+
+TEST(Paint, ContrastIsTheTexturesOwn) {
+  Material material = test::diffuse(0.8f);
+  EXPECT_EQ(Elements(textured(4, material)).pool->texture_contrast(0), 0.0f);
+  material.base_colour_texture.image = 0;
+  Elements elements(textured(4, material));
+  elements.expand(11);
+  const ElementPool& pool = *elements.pool;
+  // Checks of two values in equal parts: half their difference over their mean, whatever the reflectance.
+  const float light = srgb_to_linear(1), dark = srgb_to_linear(60 / 255.0f);
+  const float contrast = (light - dark) / (light + dark);
+  EXPECT_NEAR(pool.texture_contrast(pool.root()), contrast, 0.2f * contrast);
+  size_t within_a_check = 0;
+  for (const ElementId id : elements.leaves())
+    if (pool.texture_contrast(id) < 0.01f) ++within_a_check;
+  EXPECT_GT(within_a_check, 10u);
 }
 
 TEST(Paint, MaskedHalfCoversHalf) {

@@ -95,6 +95,36 @@ TEST(AdaptiveGather, TheErrorIsWhatWasAskedFor) {
   }
 }
 
+TEST(AdaptiveGather, APatternHidesSomeOfTheError) {
+  const auto cuts = [](bool patterned) {
+    Scene scene = half_in_shadow();
+    Image checks;
+    checks.width = checks.height = 32;
+    for (uint32_t i = 0; i < 1024; ++i) {
+      const auto grey = static_cast<uint8_t>(patterned && (i / 2 + i / 64) % 2 == 0 ? 80 : 200);
+      checks.rgba.insert(checks.rgba.end(), {grey, grey, grey, 255});
+    }
+    scene.images.push_back(checks);
+    Primitive& floor = scene.meshes[0].primitives[0];
+    scene.materials[floor.material].base_colour = vec4(1);
+    scene.materials[floor.material].base_colour_texture.image = 0;
+    for (const vec3& p : floor.positions) floor.texcoords[0].emplace_back(p.x / 4 + 0.5f, p.y / 4 + 0.5f);
+    Solved solved(std::move(scene), test::quick());
+    solved.solve();
+    const size_t before = solved.pool().size();
+    ReconstructOptions options;
+    options.error = 0.08;
+    ReconstructStats stats;
+    AdaptiveGather gather(*solved.solver, options, CancelToken(), stats);
+    gather.run();
+    EXPECT_LT(stats.error, options.error);
+    return static_cast<double>(solved.pool().size() - before);
+  };
+  const double plain = cuts(false), patterned = cuts(true);
+  EXPECT_LT(patterned, 0.7 * plain);
+  EXPECT_GT(patterned, 0.05 * plain);
+}
+
 TEST(AdaptiveGather, LeavesEvenLightAlone) {
   Solved solved(test::procedural("furnace", 1200), test::quick());
   solved.solve();

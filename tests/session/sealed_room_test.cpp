@@ -119,8 +119,8 @@ Found light_in(bool solid, float turn, uint32_t seed) {
 
 TEST(SealedRoom, StaysDarkInFullSun) {
   for (const bool solid : {true, false})
-    for (const float turn : {0.0f, 0.35f})
-      for (const uint32_t seed : {0u, 5u}) {
+    for (const float turn : {0.0f, 0.35f, 0.8f})
+      for (const uint32_t seed : {0u, 1u, 5u, 12u}) {
         const Found light = light_in(solid, turn, seed);
         EXPECT_GT(light.count, 60u);
         EXPECT_GT(light.outside, 20000);

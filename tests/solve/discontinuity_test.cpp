@@ -87,6 +87,40 @@ TEST(Feet, OfWhatHoversAreGaps) {
   EXPECT_FALSE(feet.part(floor_of(solved)));
 }
 
+// What goes on below the floor leaves no gap, however little of it is there.
+TEST(Feet, OfWhatEndsJustBelowAreClosed) {
+  for (const float low : {-0.5f, -0.02f, -1e-3f}) {
+    const Solved solved(floor_and_sheet(1, -2, 3, low, 2), following());
+    Feet feet;
+    feet.grow_to(solved.pool(), solved.solver->visibility());
+    EXPECT_EQ(feet.of(floor_of(solved)).seam, Seam::kSharp) << low;
+    EXPECT_TRUE(feet.part(floor_of(solved))) << low;
+  }
+}
+
+// A closet in a large floor: none of its walls runs along much of a cut.
+TEST(Feet, OfAllWallsTogetherPartRooms) {
+  const auto wall = [](Scene& scene, const vec3& from, const vec3& along) {
+    test::add(scene, test::parallelogram(from, along, {0, 0, 2}), two_sided());
+  };
+  const auto parts = [](Scene scene) {
+    const Solved solved(std::move(scene), following());
+    Feet feet;
+    feet.grow_to(solved.pool(), solved.solver->visibility());
+    EXPECT_FALSE(feet.is_long(floor_of(solved)));
+    return feet.part(floor_of(solved));
+  };
+  Scene scene;
+  test::add(scene, large_triangle(), test::diffuse(0.5f));
+  wall(scene, {-1, -1, 0}, {1, 0, 0});
+  Scene closet = scene;
+  wall(closet, {0, -1, 0}, {0, 1, 0});
+  wall(closet, {0, 0, 0}, {-1, 0, 0});
+  wall(closet, {-1, 0, 0}, {0, -1, 0});
+  EXPECT_FALSE(parts(std::move(scene)));
+  EXPECT_TRUE(parts(std::move(closet)));
+}
+
 // What is small for the scene is no wall, though its foot is a seam as sharp as any.
 TEST(Feet, OfSmallThingsPartNoRooms) {
   Scene scene;

@@ -58,9 +58,18 @@ Scene mixed_furnace(float b) {
 }
 
 TEST(KnownAnswers, MixedFurnaceIsUniform) {
-  Solved solved(mixed_furnace(3));
-  solved.solve();
-  expect_uniform(solved, 3, 0.06, 0.003);
+  // The darkest and the brightest leaf are a matter of luck: they must be right for any. Leaves of the
+  // default size are four times as many and each has few rays: their extremes would tell of the number of
+  // rays.
+  for (const uint32_t seed : {0u, 1u, 2u}) {
+    SCOPED_TRACE(seed);
+    SolveOptions options;
+    options.seed = seed;
+    options.least_area = 2e-4;
+    Solved solved(mixed_furnace(3), options);
+    solved.solve();
+    expect_uniform(solved, 3, 0.06, 0.003);
+  }
 }
 
 /// Irradiance averaged over 7^3 cells of the unit cube, so that solutions with other leaves compare. No

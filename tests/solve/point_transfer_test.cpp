@@ -179,6 +179,29 @@ TEST(PointTransfer, ATriangleOrPatchThatIsTakenForFarErrsByNoMoreThanStated) {
   EXPECT_GE(patch, 10 * tolerance);
 }
 
+TEST(PointTransfer, AWallIsExactHoweverItIsCut) {
+  Random random(3);
+  for (const uint32_t n : {2u, 5u, 32u}) {
+    Scene scene;
+    Material paint = test::diffuse(0.5f);
+    paint.double_sided = true;
+    test::add(scene, shapes::flat_grid(n), test::add(scene, paint),
+              test::turn(1, {3, 1, 2}) * test::scale(vec3(2, -2, 2)));
+    const Elements elements(std::move(scene));
+    const ElementPool& pool = *elements.pool;
+    for (const ElementId wall : pool.surface_roots()) {
+      const Element& e = pool[wall];
+      const vec3 facing = normalize(e.summed_normal);
+      for (int i = 0; i < 200; ++i) {
+        const vec3 x = e.centre + random.in(0.01f, 0.6f) * facing + 0.8f * random.direction();
+        const vec3 n_x = random.direction();
+        const double exact = exact_factor(pool, wall, x, n_x);
+        ASSERT_NEAR(std::max(0.0f, dot(n_x, point_transfer(pool, wall, x, n_x))), exact, 2e-5) << n;
+      }
+    }
+  }
+}
+
 TEST(PointTransfer, AVolumeClusterErrsByNoMoreThanItsBound) {
   Random random(3);
   Scene scene;

@@ -16,14 +16,15 @@ constexpr float kThinnest = 0.005f;
 // How much of a cut something has to stand along; and how much if the cut is to come before those along
 // shadows.
 constexpr float kAlong = 0.25f, kMostly = 0.5f;
-// And how much of it, without a gap, where there may be another room on the far side.
-constexpr float kParts = 0.5f;
+// And how much of it, without a gap, where there may be another room on the far side; or of the radius, of
+// walls along all lines: of a large piece a room may take but a corner.
+constexpr float kParts = 0.5f, kPartsInAll = 0.25f;
 // What is larger than this for the scene may be a wall.
 constexpr float kWall = 0.15f;
 // Lines this near, as a share of the radius, are one.
 constexpr float kSameLine = 1e-3f;
 // What hovers no higher than this, as a share of the radius, stands on the piece: little light gets under it.
-constexpr float kHovers = 0.02f;
+constexpr float kHovers = 0.05f;
 // What shines and is smaller than this for its distance casts shadows that have an edge.
 constexpr float kSmall = 0.1f;
 // Places from which a lamp is looked for.
@@ -117,20 +118,9 @@ class FootLines {
       : piece_(piece), both_sides_(both_sides), slack_(slack), epsilon_(epsilon) {}
 
   void add(const std::array<vec3, 3>& corners, bool large) {
-    std::array<float, 3> heights;
-    float highest = 0;
-    bool closed = true;
-    for (size_t k = 0; k < 3; ++k) {
-      heights[k] = dot(corners[k] - piece_.origin, piece_.normal);
-      if (std::abs(heights[k]) <= slack_) {
-        closed &= std::abs(heights[k]) <= epsilon_;
-        heights[k] = 0;
-      }
-      highest = std::max(highest, heights[k]);
-    }
-    vec3 from, to;
-    if ((highest <= 0 && !both_sides_) || !meets_plane(corners, heights, from, to)) return;
-    add(piece_.flat(from), piece_.flat(to), closed, large);
+    // What passes through the plane leaves no gap, though it may end close behind it.
+    if (add(corners, large, epsilon_)) return;
+    add(corners, large, slack_);
   }
 
   std::optional<Line> best() const {
@@ -141,7 +131,30 @@ class FootLines {
     return best != nullptr ? std::optional(*best) : std::nullopt;
   }
 
+  // Metres along which walls stand without a gap.
+  float walled() const {
+    float sum = 0;
+    for (const Line& line : lines_) sum += line.walled;
+    return sum;
+  }
+
  private:
+  // With corners no farther from the plane than `slack` taken for on it. Whether it meets the plane in a
+  // line.
+  bool add(const std::array<vec3, 3>& corners, bool large, float slack) {
+    std::array<float, 3> heights;
+    for (size_t k = 0; k < 3; ++k) {
+      heights[k] = dot(corners[k] - piece_.origin, piece_.normal);
+      if (std::abs(heights[k]) <= slack) heights[k] = 0;
+    }
+    vec3 from, to;
+    if ((*std::max_element(heights.begin(), heights.end()) <= 0 && !both_sides_) ||
+        !meets_plane(corners, heights, from, to))
+      return false;
+    add(piece_.flat(from), piece_.flat(to), slack == epsilon_, large);
+    return true;
+  }
+
   void add(const vec2& from, const vec2& to, bool closed, bool large) {
     const float span = length(to - from);
     if (!(span > kSameLine * piece_.radius)) return;
@@ -182,8 +195,14 @@ std::array<vec3, 3> corners_of(const SurfaceSet& set, uint32_t triangle) {
   return {part.positions[c.x], part.positions[c.y], part.positions[c.z]};
 }
 
-std::optional<Line> find_foot(const ElementPool& pool, const Visibility& visibility,
-                              std::span<const float> sizes, const Piece& piece, ElementId id) {
+// Where something stands on a piece.
+struct FoundFoot {
+  CutPlane cut;
+  bool is_long = false, parts = false;
+};
+
+FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::span<const float> sizes,
+                    const Piece& piece, ElementId id) {
   const SurfaceSet& set = pool.surfaces();
   const bool both = set.scene->materials[set.parts[pool[id].part].material].lit_behind();
   const float slack = std::max(visibility.epsilon, kHovers * piece.radius);
@@ -193,7 +212,14 @@ std::optional<Line> find_foot(const ElementPool& pool, const Visibility& visibil
   const float wall = kWall * visibility.extent;
   visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), slack,
                                 [&](uint32_t t) { feet.add(corners_of(set, t), sizes[t] >= wall); });
-  return feet.best();
+  const std::optional<Line> foot = feet.best();
+  FoundFoot found;
+  found.parts = feet.walled() >= kPartsInAll * piece.radius;
+  if (!foot) return found;
+  found.cut = piece.plane(*foot, foot->closed < 0.5f * foot->covered ? Seam::kGap : Seam::kSharp);
+  found.is_long = foot->covered >= kMostly * foot->length;
+  found.parts |= foot->walled >= kParts * foot->length;
+  return found;
 }
 
 // The way from a place to the middle of a lamp; 0 where the lamp does not shine there.
@@ -361,22 +387,12 @@ std::vector<float> surface_sizes(const SurfaceSet& set) {
   return sizes;
 }
 
-struct FoundFoot {
-  CutPlane cut;
-  bool is_long = false, parts = false;
-};
-
 // The foot of an element; of a cluster whether any of its triangles has one that parts it.
 FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::span<const float> sizes,
                     ElementId id) {
   const Element& e = pool[id];
-  const auto look = [&](const ElementPolygon& polygon) -> FoundFoot {
-    const Piece piece(polygon);
-    const std::optional<Line> foot = find_foot(pool, visibility, sizes, piece, id);
-    if (!foot) return {};
-    const Seam seam = foot->closed < 0.5f * foot->covered ? Seam::kGap : Seam::kSharp;
-    return {piece.plane(*foot, seam), foot->covered >= kMostly * foot->length,
-            foot->walled >= kParts * foot->length};
+  const auto look = [&](const ElementPolygon& polygon) {
+    return find_foot(pool, visibility, sizes, Piece(polygon), id);
   };
   if (is_polygon(e.kind)) return look(pool.polygon(id));
   FoundFoot found;

@@ -145,14 +145,14 @@ void add_triangle(const PlacedTree& placed, uint32_t triangle, const vec3& x, co
   }
 }
 
-// Descends a face cluster tree from `root`, adding up pieces that are small for their distance.
+// Descends the tree of a face cluster, adding up pieces that are small for their distance.
 template <typename Sum>
-void add_tree(const PlacedTree& placed, ClusterRef root, const vec3& x, const vec3& n,
-              float horizon_tolerance, Sum& sum) {
+void add_tree(const ElementPool& pool, ElementId source, const PlacedTree& placed, const vec3& x,
+              const vec3& n, float horizon_tolerance, Sum& sum) {
   constexpr size_t kStack = 256;
   std::array<ClusterRef, kStack> stack;
   size_t depth = 0;
-  stack[depth++] = root;
+  stack[depth++] = pool[source].shape;
   const float area_scale = placed.part.scale * placed.part.scale;
   while (depth > 0) {
     const ClusterRef ref = stack[--depth];
@@ -174,6 +174,12 @@ void add_tree(const PlacedTree& placed, ClusterRef root, const vec3& x, const ve
     const bool near_horizon = std::abs(dot(d, n)) < radius && view.factor > horizon_tolerance;
     if ((small && !near_horizon) || depth + 2 > kStack) {
       sum.add_far(FarCluster{d, squared, summed, area, radius, node.cone_cosine > 0.995f, view}, n);
+      continue;
+    }
+    // Exact at once, however many triangles it is made of.
+    if (!placed.tree.outlines.of(ref).empty()) {
+      const ElementPolygon outline = pool.outline(source, ref);
+      if (in_front(x, outline.corners[0], summed)) sum.add_near(x, n, outline.span());
       continue;
     }
     stack[depth++] = node.child[1];
@@ -285,7 +291,7 @@ void add_surface(const ElementPool& pool, ElementId source, const vec3& x, const
   const PlacedTree placed{part, pool.surfaces().tree(part), e.back ? -1.0f * part.area_map : part.area_map,
                           e.back ? -part.winding : part.winding};
   if (e.kind == ElementKind::kTriangle) return add_triangle(placed, e.shape, x, n, sum);
-  add_tree(placed, e.shape, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance, sum);
+  add_tree(pool, source, placed, x, n, e.exitance != vec3(0) ? kLampTolerance : kHorizonTolerance, sum);
 }
 
 // A cell that the horizon does not cut brings exactly what its light is, however uneven; of what is cut, the

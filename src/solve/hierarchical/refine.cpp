@@ -79,8 +79,32 @@ bool may_open_source(const Element& e, float least_area) {
   return e.kind == ElementKind::kSky ? divisible(e) : may_open_receiver(e, least_area);
 }
 
+// The most that a point of `e` can lie above the plane through `at` with unit normal `n`: exact for polygons,
+// and for flat clusters that of a disc of their thickness.
+float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const vec3& n) {
+  const Element& e = pool[id];
+  if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
+    float highest = std::numeric_limits<float>::lowest();
+    const ElementPolygon polygon = pool.polygon(id);  // must outlive its span
+    for (const vec3& corner : polygon.span()) highest = std::max(highest, dot(corner - at, n));
+    return highest;
+  }
+  const vec3 axis = normalize_or(e.summed_normal, n);
+  const float reach = e.thickness * std::abs(dot(axis, n)) + e.radius * length(cross(axis, n));
+  return dot(e.centre - at, n) + std::min(reach, e.radius);
+}
+
+// Whether a flat element's plane cuts another.
+bool cuts(const ElementPool& pool, ElementId flat, ElementId other, float rounding) {
+  const Element& e = pool[flat];
+  const vec3 n = normalize_or(e.summed_normal, vec3(0));
+  const float most = rounding + e.thickness;
+  return e.flat && highest_above(pool, other, e.centre, n) > most &&
+         highest_above(pool, other, e.centre, -n) > most;
+}
+
 Decision decide(const ElementPool& pool, const Feet& feet, const RadiosityState& state, const Link& link,
-                const RefineOptions& options) {
+                const RefineOptions& options, float rounding) {
   const Element &r = pool[link.receiver], &s = pool[link.source];
   const bool self = link.receiver == link.source;
   LinkError error = estimate_error(pool, state, link);
@@ -91,6 +115,11 @@ Decision decide(const ElementPool& pool, const Feet& feet, const RadiosityState&
   if (feet.part(link.receiver) && link.receiver != link.source && s.kind != ElementKind::kVolume &&
       link.sight != Sight::kClear && may_open_receiver(r, kLeastAtFoot * options.least_area))
     return Decision::kReceiver;
+  // Of a floor that goes on behind a wall, the wall sees the part before it.
+  if (feet.part(link.source) && link.receiver != link.source && r.kind != ElementKind::kVolume &&
+      may_open_source(s, kLeastAtFoot * options.least_area) &&
+      cuts(pool, link.receiver, link.source, rounding))
+    return Decision::kSource;
   if (error.total() <= options.power_error) return Decision::kKeep;
   const bool receiver = may_open_receiver(r, options.least_area),
              source = may_open_source(s, options.least_area);
@@ -119,21 +148,6 @@ void sampling_effort(const ElementPool& pool, const Child& child, uint32_t& poin
   const Element &r = pool[child.receiver], &s = pool[child.source];
   points = r.kind <= ElementKind::kCluster || is_light(s.kind) ? 8 : 4;
   rays = is_light(s.kind) ? 1 : r.kind <= ElementKind::kCluster ? 2 : 4;
-}
-
-// The most that a point of `e` can lie above the plane through `at` with unit normal `n`: exact for polygons,
-// and for flat clusters that of a disc of their thickness.
-float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const vec3& n) {
-  const Element& e = pool[id];
-  if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
-    float highest = std::numeric_limits<float>::lowest();
-    const ElementPolygon polygon = pool.polygon(id);  // must outlive its span
-    for (const vec3& corner : polygon.span()) highest = std::max(highest, dot(corner - at, n));
-    return highest;
-  }
-  const vec3 axis = normalize_or(e.summed_normal, n);
-  const float reach = e.thickness * std::abs(dot(axis, n)) + e.radius * length(cross(axis, n));
-  return dot(e.centre - at, n) + std::min(reach, e.radius);
 }
 
 // Whether all of `to` lies on or below all of the flat element `from`: nothing passes between them.
@@ -254,7 +268,10 @@ RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool&
   while (!active.empty() && !cancel.cancelled()) {
     decisions.assign(active.size(), Decision::kKeep);
     parallel_for(
-        active.size(), [&](size_t i) { decisions[i] = decide(pool, feet, state, all[active[i]], options); },
+        active.size(),
+        [&](size_t i) {
+          decisions[i] = decide(pool, feet, state, all[active[i]], options, visibility.epsilon);
+        },
         256);
     open_elements(pool, visibility, feet, all, active, decisions, state, total_rays);
     std::vector<uint64_t> next;

@@ -12,7 +12,8 @@ class Regard {
   /// Everything counts in full.
   Regard() = default;
   /// The middle of the scene's triangles (the median of their first corners) and twice the distance from it
-  /// that nine tenths of them keep within. Both are counted, not weighted by area.
+  /// that nine tenths of them keep within, or where that is less four times what three quarters do: beside a
+  /// room of a dozen triangles two of a landscape are more than a tenth. Counted, not weighted by area.
   explicit Regard(const SurfaceSet& surfaces);
 
   /// Share of a surface's area that counts, 0..1.
@@ -33,9 +34,14 @@ double regarded_area(const ElementPool& pool, const Regard& regard);
 /// is dark. Infinite where nobody looks, as under a box.
 double adapted_light(const ElementPool& pool, const RadiosityState& state, ElementId id, double area);
 
-/// How much more error counts in the dark, 1..10: from a twentieth of the mean downwards the root of what
-/// that is over the light adapted to. Between the mean square, which knows no eye, and lightness, by which
-/// every share of a stimulus counts alike.
+/// How much less error counts on what is itself uneven to the eye, 1/2..1: from a contrast of 5% on the
+/// threshold at which a pattern is seen against another rises as that one's contrast to the power of 0.62 (G.
+/// Legge and J. Foley, Contrast Masking in Human Vision, 1980). How coarse the texture is for the error is
+/// not asked; hence the bound. `contrast` is ElementPool::texture_contrast.
+double weight_of_masking(double contrast);
+
+/// How much more error counts in the dark, 1..10: from a fifth of the mean downwards what that is over the
+/// light adapted to, since every share of a stimulus counts alike there.
 double weight_of_darkness(double adapted, double mean);
 
 }  // namespace goldthread

@@ -13,10 +13,6 @@ namespace {
 // spherical triangle are lost in rounding.
 constexpr float kSmallSolidAngle = 0.05f;
 
-// Points stay a hair's breadth from the edges, as a share of the way to the middle: on one, or by rounding
-// past it, a point would lie in the wall that stands there or even behind it as much as before it.
-constexpr float kDrawnIn = 1e-3f;
-
 // Descends a binary tree by chance: one number in [0, 1) makes all the choices, and what it has left serves
 // within the leaf. Twenty choices use up nearly all bits of a float: those that are gone are made up in the
 // end, or a million triangles would be sampled along a few lines each, some of them edges.
@@ -109,6 +105,9 @@ SurfacePoint ElementPool::sample_polygon(const ElementPolygon& polygon, const ve
   while (i + 2 < polygon.count && target >= areas[i]) target -= areas[i++];
   const float s = std::sqrt(std::clamp(areas[i] > 0 ? target / areas[i] : 0.5f, 0.0f, 1.0f));
   const vec3 &b = polygon.corners[i], &c = polygon.corners[i + 1];
+  // A hair's breadth from the edges: on one, a point would lie in the wall that stands there as much as
+  // before it.
+  constexpr float kDrawnIn = 1e-3f;
   const vec3 position = (1 - s) * a + s * ((1 - v) * b + v * c), centroid = (a + b + c) / 3.0f;
   return {position + kDrawnIn * (centroid - position), normal};
 }
@@ -178,17 +177,19 @@ SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3
     weight = std::max(0.0f, dot(d, n)) * plane * whole / (squared * squared * chance + 1e-30f);
     return point;
   }
-  vec3 middle(0);
-  for (size_t i = 0; i < polygon.count; ++i) middle += from_x[i] / static_cast<float>(polygon.count);
-  for (size_t i = 0; i < polygon.count; ++i) from_x[i] += kDrawnIn * (middle - from_x[i]);
   const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
   const float towards = -dot(direction, normal), here = dot(direction, n);
   if (towards <= 1e-5f) return {polygon.corners[0], normal};
-  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past the
-  // polygon's end and into what stands there: it is drawn back by as much.
-  const float drawn_back = 1 - std::min(0.1f, 2e-6f / towards);
   weight = std::max(0.0f, here) * angle / chance;
-  return {x + direction * (drawn_back * plane / towards), normal, triangle};
+  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past an edge
+  // and into what stands there or even behind it: it is drawn in by more than that.
+  constexpr float kRounding = 4e-6f;
+  const float distance = plane / towards;
+  const vec3 position = x + distance * direction;
+  vec3 inward = -position;
+  for (size_t i = 0; i < polygon.count; ++i) inward += polygon.corners[i] / static_cast<float>(polygon.count);
+  const float step = std::min(kRounding * distance / towards, 0.1f * length(inward));
+  return {position + step * normalize_or(inward, vec3(0)), normal, triangle};
 }
 
 vec3 ElementPool::sky_direction(ElementId id, float u, float v) const {

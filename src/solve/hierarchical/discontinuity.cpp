@@ -16,11 +16,13 @@ constexpr float kThinnest = 0.005f;
 // How much of a cut something has to stand along; and how much if the cut is to come before those along
 // shadows.
 constexpr float kAlong = 0.25f, kMostly = 0.5f;
-// And how much of it, without a gap, where there may be another room on the far side; or of the radius, of
-// walls along all lines: of a large piece a room may take but a corner.
-constexpr float kParts = 0.5f, kPartsInAll = 0.25f;
+// And how much of it, without a gap, where there may be another room on the far side.
+constexpr float kParts = 0.5f;
 // What is larger than this for the scene may be a wall.
 constexpr float kWall = 0.15f;
+// Of a piece whose radius is at least half a wall a room may take but a corner: there, walls along all lines
+// count, if they are this long for the radius.
+constexpr float kPartsInAll = 0.25f;
 // Lines this near, as a share of the radius, are one.
 constexpr float kSameLine = 1e-3f;
 // What hovers no higher than this, as a share of the radius, stands on the piece: little light gets under it.
@@ -214,7 +216,7 @@ FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::
                                 [&](uint32_t t) { feet.add(corners_of(set, t), sizes[t] >= wall); });
   const std::optional<Line> foot = feet.best();
   FoundFoot found;
-  found.parts = feet.walled() >= kPartsInAll * piece.radius;
+  found.parts = piece.radius >= 0.5f * wall && feet.walled() >= kPartsInAll * piece.radius;
   if (!foot) return found;
   found.cut = piece.plane(*foot, foot->closed < 0.5f * foot->covered ? Seam::kGap : Seam::kSharp);
   found.is_long = foot->covered >= kMostly * foot->length;

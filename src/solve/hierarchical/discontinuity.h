@@ -37,9 +37,9 @@ class Feet {
   /// Visibility::discontinuities is off.
   void grow_to(const ElementPool& pool, const Visibility& visibility);
 
-  /// Whether what stands there is as large as a wall and leaves no gap, along half of a cut or all lines
-  /// together along a quarter of the radius: on the far side there may be another room. Of a cluster of few
-  /// triangles: whether that is so of any.
+  /// Whether what stands there is as large as a wall and leaves no gap, along half of a cut or, of large
+  /// pieces, along all lines together for a quarter of the radius: on the far side there may be another room.
+  /// Of a cluster of few triangles: whether that is so of any.
   bool part(ElementId id) const { return parted_.contains(id); }
   /// Absent where there is none, and for clusters.
   CutPlane of(ElementId id) const;

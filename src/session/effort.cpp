@@ -17,9 +17,9 @@ struct Preset {
   double growth, shown_area;  // ReconstructOptions::growth, least_area
 };
 
-constexpr std::array<Preset, 4> kPresets{{{0.15, 1e-4, 2e-4, 32, 0.03, 2, 2e-6},
-                                          {0.06, 1e-5, 1.2e-5, 128, 0.01, 3, 5e-7},
-                                          {0.03, 3e-6, 6e-6, 256, 0.005, 3, 5e-7},
+constexpr std::array<Preset, 4> kPresets{{{0.15, 5e-5, 1e-4, 32, 0.03, 4, 1e-6},
+                                          {0.06, 1e-5, 1.2e-5, 128, 0.01, 4, 5e-7},
+                                          {0.03, 3e-6, 6e-6, 256, 0.005, 4, 5e-7},
                                           {0.015, 1e-6, 1.5e-6, 512, 0.002, 5, 5e-7}}};
 
 double between(double a, double b, double share) {

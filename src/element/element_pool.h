@@ -67,7 +67,7 @@ struct ElementPassage {
 /// The one of a cluster's triangles on which the point lies.
 constexpr uint32_t kSomeTriangle = 0xffffffffu;
 
-/// A point on an element's real surface.
+/// A point on an element's surface: a triangle's, or that of an outline (FlatOutlines) that stands for many.
 struct SurfacePoint {
   vec3 position{0};
   vec3 normal{0};         ///< unit, on the element's side
@@ -126,8 +126,8 @@ class ElementPool {
   /// kNoElement where there is no other side.
   ElementId behind(ElementId id, size_t end) const;
 
-  /// Point i of kStoredSamples that are spread evenly by area over the real triangles of a volume or face
-  /// cluster.
+  /// Point i of kStoredSamples that are spread evenly by area over the triangles or outlines of a volume or
+  /// face cluster.
   const SurfacePoint& stored_sample(ElementId id, uint32_t i) const {
     return samples_[elements_[id].samples + i];
   }

@@ -39,7 +39,7 @@ constexpr float kNear = 2;
 // A cluster whose normals lie within this cosine (45 degrees) of their mean has no faces turned away from
 // each other.
 constexpr float kTurned = 0.7071f;
-// What a near source's unevenness may amount to, as a share of the receiver's light.
+// What a source's unevenness may amount to, as a share of the receiver's light.
 constexpr float kUneven = 0.02f;
 
 // Adds up what comes to one point.
@@ -121,6 +121,8 @@ class PointGather {
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
     if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
+    // A source that outshines all that the leaf has is not what the leaf sees of it: from a dark room, of a
+    // floor that goes on outside, the inner part.
     if (count > 0 && (brings > whole_ || has_unlike_sides(s)) && is_unlike(s, source, factor))
       return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;

@@ -43,7 +43,9 @@ struct Gathered {
 /// elements above it, each evaluated exactly at x (equation 4.12 with the transfer of 4.19 taken anew), but
 /// for those that bring next to nothing, which serve as they are. Rays are cast for links that bring a share
 /// of the light worth them; for the rest the links' own sampled visibility serves. A source next to x whose
-/// radiosity varies is descended: what x has before it may be in the shadow of x's own surface.
+/// radiosity varies is descended: what x has before it may be in the shadow of x's own surface. And
+/// of what outshines all that the leaf has, or may have faces turned away from each other, the leaves that
+/// rays meet tell, not its mean.
 Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
                    const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
 

@@ -291,7 +291,12 @@ TEST(ElementPool, APointOfAFlatClusterIsFoundInTheLeafThatHoldsIt) {
   const auto expect_found = [&](ElementId id, const SurfacePoint& p) {
     const Element& leaf = pool[pool.deepest(id, p)];
     ASSERT_EQ(leaf.first_child, kNoElement);
-    ASSERT_LE(length(p.position - leaf.centre), 1.001f * leaf.radius + 1e-4f);
+    const ElementPolygon outline = pool.polygon(pool.deepest(id, p));
+    for (size_t k = 0; k < outline.count; ++k) {
+      const vec3 &a = outline.corners[k], &b = outline.corners[(k + 1) % outline.count];
+      const vec3 inward = cross(normalize(leaf.summed_normal), b - a);
+      ASSERT_GE(dot(p.position - a, inward), -1e-5f * length(inward)) << id;
+    }
     ASSERT_GT(dot(p.normal, normalize(leaf.summed_normal)), 0.999f);
     ++tried;
     of_some_triangle += p.triangle == kSomeTriangle;

@@ -30,7 +30,7 @@ TEST(Regard, AllOfARoomCounts) {
   EXPECT_EQ(Regard().of((*elements.pool)[0]), 1.0f);
 }
 
-TEST(Regard, APlainCountsForNoMoreThanThriceItsMiddle) {
+TEST(Regard, APlainCountsForNoMoreHoweverFarItGoes) {
   const double small = area_of(room_on_plain(100)), large = area_of(room_on_plain(1000)),
                larger = area_of(room_on_plain(10000));
   EXPECT_LT(small, 1500);  // of 40,000

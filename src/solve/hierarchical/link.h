@@ -41,7 +41,7 @@ struct Link {
   /// part: p gets ambient + dot(p - centre, transfer), transfer being the gradient.
   vec3 transfer{0};
   float ambient = 0;
-  float mean = 0;           ///< mean over the receiver's real triangles: irradiance per unit radiosity
+  float mean = 0;           ///< mean over the receiver's surface: irradiance per unit radiosity
   float spread = 0;         ///< largest deviation of a sample from what transfer and ambient say of it
   float unoccluded = 0;     ///< mean, were everything visible
   uint32_t view = kNoView;  ///< LinkPool::views, for sources that are unevenly bright

@@ -31,10 +31,11 @@ struct LinkError {
 };
 LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, const Link& link);
 
-/// Refines breadth first until no link exceeds the bound and none leads as a whole to what a foot parts
-/// (Feet). New elements are made as they are needed. Each wave of links is decided and sampled in parallel
-/// and laid out in a fixed order, so that the result does not depend on the threads. Rays are added to `rays`
-/// wave by wave; `between_waves` may be empty.
+/// Refines breadth first until no link exceeds the bound, none leads as a whole to what a foot parts (Feet),
+/// and none from such a source to what lies in the plane of the foot's wall. New elements are made as they
+/// are needed. Each wave of links is decided and sampled in parallel and laid out in a fixed order, so that
+/// the result does not depend on the threads. Rays are added to `rays` wave by wave; `between_waves` may be
+/// empty.
 RefineCounters refine(ElementPool& pool, const Visibility& visibility, LinkPool& links, Feet& feet,
                       RadiosityState& state, const RefineOptions& options, const CancelToken& cancel,
                       RayCount& rays, const std::function<void()>& between_waves);

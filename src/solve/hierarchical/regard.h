@@ -6,7 +6,7 @@ namespace goldthread {
 
 /// A room on a plain of kilometres: nearly all light lands on the plain, and a bound on errors in shares of
 /// that light would let the room be anything. So area counts in full where most triangles are, and beyond by
-/// the solid angle that it has from there.
+/// the solid angle that a plain has from there, which falls with the cube of the distance.
 class Regard {
  public:
   /// Everything counts in full.

@@ -51,7 +51,7 @@ struct Visibility {
   bool discontinuities = false;  ///< cuts follow the edges of shadows and the feet of what stands there
   bool adaptive = true;          ///< as many rays as a link or a point deserves; else as many for all
 
-  /// Casts `rays` rays from `x` with unit normal `n` to points on the real triangles of `source`, or
+  /// Casts `rays` rays from `x` with unit normal `n` to points on the triangles or outlines of `source`, or
   /// into the sky. `turn` turns the pattern. Adds the rays cast to `count`, and the first SeenPoints::kMost
   /// places where they arrived to `places` (surfaces only), if given. Not for point lights and suns.
   /// With kClear no ray is cast, and all arrive.

@@ -120,10 +120,10 @@ class PointGather {
     const bool uneven = is_surface(s.kind) && s.kind != ElementKind::kVolume &&
                         (s.first_child != kNoElement || !light_.rise.empty()) &&
                         (light_.high[source] - light_.low[source]) * factor > uneven_share() * whole_;
-    if (count > 0 && uneven) return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     // A source that outshines all that the leaf has is not what the leaf sees of it: from a dark room, of a
     // floor that goes on outside, the inner part.
-    if (count > 0 && (brings > whole_ || has_unlike_sides(s)) && is_unlike(s, source, factor))
+    const bool unlike = (brings > whole_ || has_unlike_sides(s)) && is_unlike(s, source, factor);
+    if (count > 0 && (uneven || unlike))
       return add_seen_places(link, source, factor, std::max(count, kFewPlaces));
     float visible = static_cast<float>(link.visibility) / 255.0f;
     vec3 tint = tint_of(link);

@@ -65,7 +65,7 @@ TEST(KnownAnswers, MixedFurnaceIsUniform) {
     SCOPED_TRACE(seed);
     SolveOptions options;
     options.seed = seed;
-    options.least_area = 2e-4;
+    options.least_area = 1e-4;
     Solved solved(mixed_furnace(3), options);
     solved.solve();
     expect_uniform(solved, 3, 0.06, 0.003);

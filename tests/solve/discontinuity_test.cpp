@@ -87,6 +87,41 @@ TEST(Feet, OfWhatHoversAreGaps) {
   EXPECT_FALSE(feet.part(floor_of(solved)));
 }
 
+/// The floor with a plate just above it, that shines away from it as a lamp on a ceiling does.
+Scene floor_and_plate(const vec3& from, const vec3& across, const vec3& up) {
+  Scene scene;
+  test::add(scene, large_triangle(), test::diffuse(0.5f));
+  Material lamp = test::diffuse(0.5f);
+  lamp.emission = vec3(100);
+  test::add(scene, test::parallelogram(from, across, up), std::move(lamp));
+  return scene;
+}
+
+// All of a plate is as near as its edges are; what two of its triangles share is none of them.
+TEST(Feet, OfAPlateThatHoversAreItsEdges) {
+  const CutPlane foot = foot_of(floor_and_plate({1, -3, 0.02f}, {9, 0, 0}, {0, 10, 0}));
+  ASSERT_TRUE(foot.present());
+  EXPECT_EQ(foot.seam, Seam::kGap);
+  EXPECT_NEAR(distance(foot, {1, -2, 0}), 0, 1e-5);
+  EXPECT_NEAR(distance(foot, {1, 3, 0}), 0, 1e-5);
+  EXPECT_FALSE(foot_of(floor_and_plate({-10, -10, 0.02f}, {20, 0, 0}, {0, 20, 0})).present());
+  EXPECT_FALSE(foot_of(floor_and_plate({1, -3, -0.02f}, {9, 0, 0}, {0, 10, 0})).present());
+  EXPECT_FALSE(foot_of(floor_and_plate({1, -3, 0.5f}, {9, 0, 0}, {0, 10, 0})).present());
+}
+
+// A sheet of which one end goes through the floor while the other hovers: its foot is all of it.
+TEST(Feet, OfATiltedSheetIsAllOfIt) {
+  Scene scene;
+  test::add(scene, large_triangle(), test::diffuse(0.5f));
+  test::add(scene, test::parallelogram({1, -2, -0.004f}, {0, 5, 0.014f}, {0, 0, 2}), two_sided());
+  const Solved solved(std::move(scene), following());
+  Feet feet;
+  feet.grow_to(solved.pool(), solved.solver->visibility());
+  EXPECT_TRUE(feet.is_long(floor_of(solved)));
+  EXPECT_EQ(feet.of(floor_of(solved)).seam, Seam::kGap);
+  EXPECT_FALSE(feet.part(floor_of(solved)));
+}
+
 // What goes on below the floor leaves no gap, however little of it is there.
 TEST(Feet, OfWhatEndsJustBelowAreClosed) {
   for (const float low : {-0.5f, -0.02f, -1e-3f}) {

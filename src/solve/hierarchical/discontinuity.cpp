@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "mesh/dual_graph.h"
 
 namespace goldthread {
 namespace {
@@ -27,6 +28,8 @@ constexpr float kPartsInAll = 0.25f;
 constexpr float kSameLine = 1e-3f;
 // What hovers no higher than this, as a share of the radius, stands on the piece: little light gets under it.
 constexpr float kHovers = 0.05f;
+// What is turned no farther from the piece than this, as a cosine, lies above it rather than stands on it.
+constexpr float kLies = 0.9f;
 // What shines and is smaller than this for its distance casts shadows that have an edge.
 constexpr float kSmall = 0.1f;
 // Places from which a lamp is looked for.
@@ -112,17 +115,45 @@ bool meets_plane(const std::array<vec3, 3>& corners, const std::array<float, 3>&
   return count == 2;
 }
 
-// Lines along which something stands on the piece or passes through it. What is within `slack` metres of the
-// plane is in it; what is within `epsilon` leaves no gap.
+// A stretch of a line in a piece's plane.
+struct Stretch {
+  vec2 from{0}, to{0};
+};
+
+// Lines along which something stands on the piece, passes through it or ends above it. What is within `slack`
+// metres of the plane is in it; what is within `epsilon` leaves no gap.
 class FootLines {
  public:
   FootLines(const Piece& piece, bool both_sides, float slack, float epsilon)
       : piece_(piece), both_sides_(both_sides), slack_(slack), epsilon_(epsilon) {}
 
-  void add(const std::array<vec3, 3>& corners, bool large) {
-    // What passes through the plane leaves no gap, though it may end close behind it.
-    if (add(corners, large, epsilon_)) return;
-    add(corners, large, slack_);
+  // A triangle that may stand or pass through. What of it passes through leaves no gap, though it may end
+  // close behind the plane, and says where the line is.
+  void add_standing(const std::array<vec3, 3>& corners, bool large) {
+    const std::optional<Stretch> closed = meeting(corners, epsilon_), near = meeting(corners, slack_);
+    if (closed || near) add(closed, near ? *near : *closed, large);
+  }
+
+  // An edge with nothing beyond it of what lies above the piece within the slack.
+  void add_end(const vec3& from, const vec3& to) {
+    add(std::nullopt, {piece_.flat(from), piece_.flat(to)}, false);
+  }
+
+  // Whether a triangle lies above the piece, nowhere farther from it than the slack, and not on it.
+  bool covers(const std::array<vec3, 3>& corners) const {
+    float low = std::numeric_limits<float>::max(), high = -low;
+    for (const vec3& corner : corners) {
+      const float height = dot(corner - piece_.origin, piece_.normal);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    const float most = both_sides_ ? std::max(high, -low) : high;
+    return most > epsilon_ && std::max(high, -low) <= slack_ && lies(corners);
+  }
+  // Whether a triangle is as good as parallel to the piece.
+  bool lies(const std::array<vec3, 3>& corners) const {
+    const vec3 n = normalize_or(area_vector(corners[0], corners[1], corners[2]), vec3(0));
+    return std::abs(dot(n, piece_.normal)) > kLies;
   }
 
   std::optional<Line> best() const {
@@ -141,9 +172,8 @@ class FootLines {
   }
 
  private:
-  // With corners no farther from the plane than `slack` taken for on it. Whether it meets the plane in a
-  // line.
-  bool add(const std::array<vec3, 3>& corners, bool large, float slack) {
+  // Where a triangle meets the plane, with corners no farther from it than `slack` taken for on it.
+  std::optional<Stretch> meeting(const std::array<vec3, 3>& corners, float slack) const {
     std::array<float, 3> heights;
     for (size_t k = 0; k < 3; ++k) {
       heights[k] = dot(corners[k] - piece_.origin, piece_.normal);
@@ -152,26 +182,40 @@ class FootLines {
     vec3 from, to;
     if ((*std::max_element(heights.begin(), heights.end()) <= 0 && !both_sides_) ||
         !meets_plane(corners, heights, from, to))
-      return false;
-    add(piece_.flat(from), piece_.flat(to), slack == epsilon_, large);
-    return true;
+      return std::nullopt;
+    return Stretch{piece_.flat(from), piece_.flat(to)};
   }
 
-  void add(const vec2& from, const vec2& to, bool closed, bool large) {
-    const float span = length(to - from);
+  // Where a stretch begins and ends along a direction.
+  static vec2 extent(const vec2& along, const Stretch& stretch) {
+    const float a = glm::dot(along, stretch.from), b = glm::dot(along, stretch.to);
+    return {std::min(a, b), std::max(a, b)};
+  }
+
+  // `near` is as long as `closed` or longer; the line is that of `closed`, if there is one.
+  void add(const std::optional<Stretch>& closed, const Stretch& near, bool large) {
+    const Stretch& exact = closed ? *closed : near;
+    const float span = length(exact.to - exact.from);
     if (!(span > kSameLine * piece_.radius)) return;
-    const vec2 along = (to - from) / span;
+    const vec2 along = (exact.to - exact.from) / span;
     Line line;
     line.normal = {along.y, -along.x};
-    line.offset = glm::dot(line.normal, from);
+    line.offset = glm::dot(line.normal, exact.from);
     const std::optional<vec2> chord = piece_.chord(line);
     if (!chord) return;
     line.length = chord->y - chord->x;
-    const float start = glm::dot(along, from);
-    line.covered = std::min(chord->y, start + span) - std::max(chord->x, start);
+    const vec2 shut = extent(along, exact), all = extent(along, near);
+    const auto inside = [&](float from, float to) {
+      return std::max(0.0f, std::min(chord->y, to) - std::max(chord->x, from));
+    };
+    line.covered = inside(std::min(shut.x, all.x), std::max(shut.y, all.y));
     if (line.covered <= kSameLine * piece_.radius) return;
-    line.closed = closed ? line.covered : 0;
+    line.closed = closed ? inside(shut.x, shut.y) : 0.0f;
     line.walled = large ? line.closed : 0;
+    join(line);
+  }
+
+  void join(const Line& line) {
     for (Line& other : lines_) {
       const float same = glm::dot(other.normal, line.normal) < 0 ? -1.0f : 1.0f;
       if (length(other.normal - same * line.normal) > kSameLine ||
@@ -191,10 +235,14 @@ class FootLines {
   std::vector<Line> lines_;
 };
 
+std::array<vec3, 3> corners_of(const Part& part, const TriangleMesh& mesh, uint32_t triangle) {
+  const UVec3& c = mesh.triangles[triangle];
+  return {part.positions[c.x], part.positions[c.y], part.positions[c.z]};
+}
+
 std::array<vec3, 3> corners_of(const SurfaceSet& set, uint32_t triangle) {
   const Part& part = part_of_triangle(set, triangle);
-  const UVec3& c = set.tree(part).mesh.triangles[triangle - part.first_triangle];
-  return {part.positions[c.x], part.positions[c.y], part.positions[c.z]};
+  return corners_of(part, set.tree(part).mesh, triangle - part.first_triangle);
 }
 
 // Where something stands on a piece.
@@ -203,7 +251,21 @@ struct FoundFoot {
   bool is_long = false, parts = false;
 };
 
-FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::span<const float> sizes,
+// The ends of what lies above the piece: edges of a triangle there without a neighbour that lies there, too.
+void add_ends(const SurfaceSet& set, const FeetWorld& world, uint32_t triangle, FootLines& feet) {
+  const Part& part = part_of_triangle(set, triangle);
+  const TriangleMesh& mesh = set.tree(part).mesh;
+  const std::vector<uint32_t>& twins = world.twins[part.tree];
+  const uint32_t t = triangle - part.first_triangle;
+  const std::array<vec3, 3> corners = corners_of(part, mesh, t);
+  for (uint32_t k = 0; k < 3; ++k) {
+    const uint32_t twin = twins[3 * size_t{t} + k];
+    if (twin == kNoTwin || !feet.lies(corners_of(part, mesh, twin / 3)))
+      feet.add_end(corners[k], corners[(k + 1) % 3]);
+  }
+}
+
+FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, const FeetWorld& world,
                     const Piece& piece, ElementId id) {
   const SurfaceSet& set = pool.surfaces();
   const bool both = set.scene->materials[set.parts[pool[id].part].material].lit_behind();
@@ -212,8 +274,14 @@ FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::
   Box box;
   for (const vec3& p : piece.polygon.span()) box.add(p);
   const float wall = kWall * visibility.extent;
-  visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), slack,
-                                [&](uint32_t t) { feet.add(corners_of(set, t), sizes[t] >= wall); });
+  visibility.caster->visit_near(box, piece.normal, dot(piece.normal, piece.origin), slack, [&](uint32_t t) {
+    const std::array<vec3, 3> corners = corners_of(set, t);
+    if (feet.covers(corners)) {
+      add_ends(set, world, t, feet);
+    } else {
+      feet.add_standing(corners, world.sizes[t] >= wall);
+    }
+  });
   const std::optional<Line> foot = feet.best();
   FoundFoot found;
   found.parts = piece.radius >= 0.5f * wall && feet.walled() >= kPartsInAll * piece.radius;
@@ -377,24 +445,26 @@ std::vector<ElementId> LampLinks::lamps_of(ElementId id) const {
 
 namespace {
 
-// Metres across the connected surface that each of the world's triangles belongs to.
-std::vector<float> surface_sizes(const SurfaceSet& set) {
-  std::vector<float> sizes(set.triangles, 0);
+FeetWorld world_of(const SurfaceSet& set) {
+  FeetWorld world;
+  world.sizes.resize(set.triangles, 0);
   for (const Surface& surface : set.surfaces) {
     const TriangleRange range = triangles_of(set, surface);
     const float size = box_of(set, surface).diagonal();
     const uint32_t first = set.parts[surface.part].first_triangle + range.first;
-    std::fill_n(sizes.begin() + first, range.count, size);
+    std::fill_n(world.sizes.begin() + first, range.count, size);
   }
-  return sizes;
+  world.twins.resize(set.trees.size());
+  parallel_for(set.trees.size(), [&](size_t i) { world.twins[i] = find_twins(set.trees[i].mesh); });
+  return world;
 }
 
 // The foot of an element; of a cluster whether any of its triangles has one that parts it.
-FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, std::span<const float> sizes,
+FoundFoot find_foot(const ElementPool& pool, const Visibility& visibility, const FeetWorld& world,
                     ElementId id) {
   const Element& e = pool[id];
   const auto look = [&](const ElementPolygon& polygon) {
-    return find_foot(pool, visibility, sizes, Piece(polygon), id);
+    return find_foot(pool, visibility, world, Piece(polygon), id);
   };
   if (is_polygon(e.kind)) return look(pool.polygon(id));
   FoundFoot found;
@@ -413,11 +483,11 @@ void Feet::grow_to(const ElementPool& pool, const Visibility& visibility) {
   const size_t first = known_;
   known_ = pool.size();
   if (!visibility.discontinuities) return;
-  if (size_.empty()) size_ = surface_sizes(pool.surfaces());
+  if (world_.sizes.empty()) world_ = world_of(pool.surfaces());
   std::vector<FoundFoot> found(known_ - first);
   parallel_for(
       found.size(),
-      [&](size_t i) { found[i] = find_foot(pool, visibility, size_, static_cast<ElementId>(first + i)); },
+      [&](size_t i) { found[i] = find_foot(pool, visibility, world_, static_cast<ElementId>(first + i)); },
       64);
   for (size_t i = 0; i < found.size(); ++i) {
     const auto id = static_cast<ElementId>(first + i);

@@ -29,8 +29,14 @@ class LampLinks {
   std::vector<Entry> links_;
 };
 
-/// Where something stands on a triangle or patch, hovers close above it or passes through it, along at least
-/// a quarter of a cut: its foot.
+/// What feet are looked for among.
+struct FeetWorld {
+  std::vector<float> sizes;  ///< by the world's triangles: metres across the connected surface it belongs to
+  std::vector<std::vector<uint32_t>> twins;  ///< by tree: find_twins of its mesh
+};
+
+/// Where something stands on a triangle or patch, hovers close above it, ends there or passes through it,
+/// along at least a quarter of a cut: its foot.
 class Feet {
  public:
   /// Looks for the feet of elements that are new since the last call. In parallel. Finds none where
@@ -49,7 +55,7 @@ class Feet {
  private:
   std::unordered_map<ElementId, CutPlane> cuts_;
   std::unordered_set<ElementId> long_, parted_;
-  std::vector<float> size_;  // metres, by the world's triangles: of the connected surface it belongs to
+  FeetWorld world_;
   size_t known_ = 0;
 };
 

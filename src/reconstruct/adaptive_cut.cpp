@@ -16,6 +16,14 @@ constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
 constexpr double kLeft = 0.5;
+// And how much of the squared error that there is a round leaves for later ones: what holds the most of it is
+// to be cut again before the rest is cut at all.
+constexpr double kLeftByRound = 0.25;
+// A leaf that holds no more than this of the allowed squared error is left alone, however many there are: what
+// tests find of it is mostly chance.
+constexpr double kNothing = 1e-5;
+// A child with more of its parent's area than this.
+constexpr float kNearlyWhole = 0.75f;
 // The share of the allowed squared error that interpolation may be found to have. Some of the rest is the
 // links' own; and where a hundredth of all places hold most of an error, few tests find about half of it.
 constexpr double kInterpolation = 0.2;
@@ -79,20 +87,30 @@ LeafFaces AdaptiveGather::faces_of(const Test& test) const {
   return faces;
 }
 
+// At how many places a leaf is looked at. What may be missed there is as large as its light, so that bright
+// ones count by its square. The first look is at all leaves; later ones take their chance.
+uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces, double areas) const {
+  const std::vector<vec3>& light = parts_[test.part].sides[test.side].light;
+  float brightest = 0;
+  for (const uint32_t point : faces.corners()) brightest = std::max(brightest, luminance(light[point]));
+  const double brightness = static_cast<double>(brightest) / mean_light_;
+  const double counts = areas * static_cast<double>(solver_.regard().of(solver_.pool()[test.leaf])) *
+                        std::max(1.0, brightness * brightness);
+  const double most = std::min(counts, static_cast<double>(kMostTests));
+  const uint32_t looks = errors_[test.leaf].looks;
+  if (looks > 0) return static_cast<uint32_t>(most + static_cast<double>(unit_float(hash(test.leaf, looks))));
+  // Of many faces one would say little.
+  return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(most)));
+}
+
 // Compares what the corners say of places within a leaf with what is there.
 AdaptiveGather::LeafError AdaptiveGather::test(const Test& test, double unit_area, RayCount& count) const {
   const Element& leaf = solver_.pool()[test.leaf];
   LeafError error;
   error.area = std::max(1e-30, static_cast<double>(leaf.area * leaf.coverage));
-  // Of many faces one would say little.
-  const double least = test.faces > 1 ? 3 : 1;
-  const double counts = error.area * static_cast<double>(solver_.regard().of(leaf));
-  const auto places = static_cast<uint32_t>(
-      std::clamp(std::ceil(counts / unit_area), least, static_cast<double>(kMostTests)) /
-          (errors_[test.leaf].looks == 0 ? 1 : 2) +
-      0.5);
   const LeafFaces faces = faces_of(test);
   if (!faces.has_area()) return error;
+  const uint32_t places = places_to_test(test, faces, error.area / unit_area);
   const uint32_t pattern = hash(test.leaf, 81 + errors_[test.leaf].looks);
   for (uint32_t i = 0; i < places; ++i) {
     const UnitSquarePoint uv = r2_point(i, pattern);
@@ -119,19 +137,47 @@ void AdaptiveGather::test_leaves(bool again) {
   errors_.resize(solver_.pool().size());
   const std::vector<Test> tests = list_tests(again);
   const double unit_area = regarded_area(solver_.pool(), solver_.regard()) / kLeastTests;
-  std::atomic<uint64_t> rays{0}, nanoseconds{0};
+  std::atomic<uint64_t> rays{0}, nanoseconds{0}, places{0};
   parallel_for(
       tests.size(),
       [&](size_t i) {
         if (cancel_.cancelled()) return;
         RayCount count;
-        errors_[tests[i].leaf].add(test(tests[i], unit_area, count));
+        const LeafError found = test(tests[i], unit_area, count);
+        errors_[tests[i].leaf].add(found);
+        places.fetch_add(found.tests, std::memory_order_relaxed);
         rays.fetch_add(count.rays, std::memory_order_relaxed);
         nanoseconds.fetch_add(count.nanoseconds, std::memory_order_relaxed);
       },
       16);
   stats_.rays += {rays.load(), nanoseconds.load()};
-  for (const Test& test : tests) places_tested_ += errors_[test.leaf].tests;
+  places_tested_ += places.load();
+}
+
+void AdaptiveGather::cut_now(std::vector<ElementId>& leaves) {
+  const ElementPool& pool = solver_.pool();
+  std::sort(leaves.begin(), leaves.end());
+  cut_.resize(pool.size(), 0);
+  for (const ElementId id : leaves) {
+    cut_[id] = 1;
+    parts_[pool[id].part].changed = true;
+  }
+  solver_.cut_leaves(leaves);
+}
+
+// The children that are nearly all of their parents: clusters lose faces one by one where their tree is
+// lopsided, and a round for each would be one for nothing.
+std::vector<ElementId> AdaptiveGather::nearly_whole(std::span<const ElementId> parents) const {
+  const ElementPool& pool = solver_.pool();
+  std::vector<ElementId> children;
+  for (const ElementId id : parents) {
+    const ElementId first = pool[id].first_child;
+    if (first == kNoElement || pool[id].kind != ElementKind::kCluster) continue;
+    for (const ElementId child : {first, first + 1})
+      if (!pool[child].indivisible && pool[child].area > kNearlyWhole * pool[id].area)
+        children.push_back(child);
+  }
+  return children;
 }
 
 // Cuts the leaves that are most wrong, until what is left is allowed. False when there are none.
@@ -157,31 +203,29 @@ bool AdaptiveGather::cut() {
                           weight_of_masking(static_cast<double>(pool.texture_contrast(id)));
     return errors_[id].squares() * regarded[id] * weight * weight;
   };
+  const double allowed = kInterpolation * options_.error * options_.error * mean * mean * area;
   std::vector<ElementId> worst;
-  const double least = options_.least_area * whole;
+  double mendable = 0;
   for (ElementId id = 0; id < errors_.size(); ++id) {
     if (!is_leaf(id)) continue;
     regarded[id] = counted(id);
     squares += regarded[id];
-    if (regarded[id] > 0 && !pool[id].indivisible && errors_[id].area > 2 * least) worst.push_back(id);
+    if (!(regarded[id] > 0) || pool[id].indivisible) continue;
+    if (regarded[id] <= kNothing * allowed) continue;
+    worst.push_back(id);
+    mendable += regarded[id];
   }
   stats_.error = std::sqrt(squares / area) / mean;
-  const double allowed = kInterpolation * options_.error * options_.error * mean * mean * area;
   std::sort(worst.begin(), worst.end(), [&](ElementId a, ElementId b) {
     return regarded[a] > regarded[b] || (regarded[a] == regarded[b] && a < b);
   });
-  if (squares <= allowed || is_spent()) return false;
+  if (mendable <= allowed || is_spent()) return false;
+  const double left = std::max(kLeft * allowed, kLeftByRound * mendable);
   size_t count = 0;
-  while (count < worst.size() && squares > kLeft * allowed) squares -= regarded[worst[count++]];
+  while (count < worst.size() && mendable > left) mendable -= regarded[worst[count++]];
   worst.resize(count);
   if (worst.empty()) return false;
-  std::sort(worst.begin(), worst.end());
-  cut_.resize(pool.size(), 0);
-  for (const ElementId id : worst) {
-    cut_[id] = 1;
-    parts_[pool[id].part].changed = true;
-  }
-  solver_.cut_leaves(worst);
+  for (; !worst.empty(); worst = nearly_whole(worst)) cut_now(worst);
   return true;
 }
 
@@ -198,9 +242,13 @@ void AdaptiveGather::show_leaves() {
     shown_.shown[id] = leaving_light(pool, id, light, solver_.state().irradiance);
     shown_.low[id] = shown_.high[id] = largest(shown_.shown[id]);
   };
+  std::vector<vec3> made(pool.size() - before);
   for (ElementId id = static_cast<ElementId>(before); id < pool.size(); ++id) {
+    // Of several cuts in one round only the first was of a leaf that has been tested.
+    vec3& light = made[id - before];
     const ElementId parent = pool[id].parent;
-    set(id, errors_[parent].light);
+    light = parent < before ? errors_[parent].light : made[parent - before];
+    set(id, light);
   }
   for (ElementId id = static_cast<ElementId>(solved_elements_); id < before; ++id)
     if (errors_[id].area > 0 && pool[id].first_child == kNoElement) set(id, errors_[id].light);

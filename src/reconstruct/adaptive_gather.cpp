@@ -50,6 +50,9 @@ AdaptiveGather::AdaptiveGather(HierarchicalSolver& solver, const ReconstructOpti
       solved_elements_(solver.pool().size()) {
   for (size_t id = 0; id < shown_.shown.size(); ++id)
     shown_.low[id] = shown_.high[id] = largest(shown_.shown[id]);
+  const vec3 power = regarded_power(solver.pool(), solver.state(), solver.regard());
+  mean_light_ = std::max(1e-30, static_cast<double>(luminance(power)) /
+                                    std::max(1e-30, regarded_area(solver.pool(), solver.regard())));
   const SurfaceSet& set = solver.pool().surfaces();
   parts_.resize(set.parts.size());
   for (uint32_t p = 0; p < set.parts.size(); ++p) {

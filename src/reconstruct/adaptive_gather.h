@@ -92,6 +92,7 @@ class AdaptiveGather {
   std::vector<Test> list_tests(bool again);
   LeafFaces faces_of(const Test& test) const;
   TestPlace test_place(const Test& test, const FacePlace& at) const;
+  uint32_t places_to_test(const Test& test, const LeafFaces& faces, double areas) const;
   LeafError test(const Test& test, double unit_area, RayCount& count) const;
   void test_leaves(bool again);
   uint64_t gathers() const { return stats_.points + places_tested_; }
@@ -100,6 +101,8 @@ class AdaptiveGather {
     return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
   }
   bool cut();
+  void cut_now(std::vector<ElementId>& leaves);
+  std::vector<ElementId> nearly_whole(std::span<const ElementId> parents) const;
   std::vector<std::pair<uint32_t, uint32_t>> spread_places(const std::vector<Test>& tests,
                                                            uint32_t places) const;
   void show_leaves();
@@ -113,6 +116,7 @@ class AdaptiveGather {
   std::vector<PartLight> parts_;
   std::vector<uint32_t> leaf_faces_;  // faces of the leaves being tested
   std::vector<LeafError> errors_;     // by element; area 0: not tested
+  double mean_light_ = 1;             // lux, by area that counts
   size_t solved_elements_ = 0;        // those that the solver knows
   uint64_t places_tested_ = 0, first_gathers_ = 0;
   std::vector<uint8_t> cut_;  // by element: the solver's leaves that were cut here

@@ -22,8 +22,11 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
 // What a source could bring at most to a point, by its size and distance alone: a link may be weak on the
 // whole and yet all that a point next to the source gets.
 float most_at(const Element& source, const vec3& x) {
-  if (!is_surface(source.kind)) return 0;
   const float apart = length(source.centre - x) - source.radius;
+  // Of a lamp its intensity counts.
+  if (source.kind == ElementKind::kPoint)
+    return apart > 0 ? 1 / (apart * apart) : std::numeric_limits<float>::infinity();
+  if (!is_surface(source.kind)) return 0;
   return apart > 0 ? std::min(1.0f, source.area / (kPi * apart * apart)) : 1.0f;
 }
 

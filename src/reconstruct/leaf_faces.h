@@ -1,6 +1,7 @@
 // The faces of a leaf as triangles, among which places are chosen evenly by area.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "reconstruct/light_points.h"
@@ -20,6 +21,8 @@ class LeafFaces {
   void add(const PartPoints& points, uint32_t face);
 
   bool has_area() const { return !up_to_.empty() && up_to_.back() > 0; }
+  /// Light points, three a triangle.
+  std::span<const uint32_t> corners() const { return corners_; }
   /// Numbers within 0..1 to places, evenly by area; has_area() must hold.
   FacePlace place(float u, float v) const;
 

@@ -20,7 +20,6 @@ struct ReconstructOptions {
   double error = 0.06;
   double growth = 3;  ///< no more is cut once so many times the work of the solver's own leaves has been done
   std::function<bool()> full;  ///< asked before every round of cuts: true when there is no room for more
-  double least_area = 5e-7;    ///< nothing is cut below this share of the scene's area
 };
 
 struct ReconstructStats {

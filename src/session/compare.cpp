@@ -77,6 +77,7 @@ View look(const TracedScene& scene, int wanted_width, int wanted_height) {
       r.triangle = met.triangle;
       r.weights = met.weights;
       r.back = dot(met.normal, scene.triangles()[met.triangle].normal) < 0;
+      turn_to_shading_normal(scene, r);
       view.shade[i] = 0.15f + 0.35f * std::abs(dot(met.normal, ray.direction));
       return;
     }
@@ -291,9 +292,13 @@ Status Comparison::compare_solutions() {
                    {},
                    "compare solutions of the same geometry"};
   }
-  const std::vector<Receiver> receivers =
-      options_.seen ? look(*first->traced, options_.picture_width, options_.picture_height).receivers
-                    : random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
+  std::vector<Receiver> receivers;
+  if (options_.seen) {
+    receivers = look(*first->traced, options_.picture_width, options_.picture_height).receivers;
+  } else {
+    receivers = random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
+    for (Receiver& r : receivers) turn_to_shading_normal(*first->traced, r);
+  }
   if (options_.seen && receivers.empty())
     return Error{ErrorCode::kNothingToBake,
                  "its camera sees no surface that takes light",

@@ -14,13 +14,13 @@ struct Preset {
   double error;
   double link_error, solve_area;  // SolveOptions::last_error, least_area
   double light_rays, ray_share;
-  double growth, shown_area;  // ReconstructOptions::growth, least_area
+  double growth;  // ReconstructOptions::growth
 };
 
-constexpr std::array<Preset, 4> kPresets{{{0.15, 5e-5, 1e-4, 32, 0.03, 4, 1e-6},
-                                          {0.06, 1e-5, 1.2e-5, 128, 0.01, 4, 5e-7},
-                                          {0.03, 3e-6, 6e-6, 256, 0.005, 4, 5e-7},
-                                          {0.015, 1e-6, 1.5e-6, 512, 0.002, 5, 5e-7}}};
+constexpr std::array<Preset, 4> kPresets{{{0.15, 5e-5, 1e-4, 32, 0.03, 4},
+                                          {0.06, 1e-5, 1.2e-5, 128, 0.01, 4},
+                                          {0.03, 3e-6, 6e-6, 256, 0.005, 4},
+                                          {0.015, 1e-6, 1.5e-6, 512, 0.002, 5}}};
 
 double between(double a, double b, double share) {
   // Exact at both ends: a preset is what the table says.
@@ -50,7 +50,6 @@ Effort effort_for(double error) {
   effort.reconstruct.ray_share = static_cast<float>(std::min(0.2, between(a.ray_share, b.ray_share, share)));
   effort.reconstruct.error = error;
   effort.reconstruct.growth = std::max(1.5, between(a.growth, b.growth, share));
-  effort.reconstruct.least_area = between(a.shown_area, b.shown_area, share);
   return effort;
 }
 

@@ -12,6 +12,9 @@
 namespace goldthread {
 namespace {
 
+// Cosine to its face below which a vertex normal is an exporter's mistake, and above which it is the face's.
+constexpr float kMistaken = 0.3f, kSame = 0.999999f;
+
 /// The point of a triangle nearest to p, in double precision (the plane's where it is inside, else an
 /// edge's).
 dvec3 nearest_on_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -181,6 +184,28 @@ vec3 ray_origin(const TracedScene& scene, uint32_t triangle, const vec3& p, cons
 mat3 normal_transform(const mat4& instance_transform) {
   const mat3 linear(instance_transform);
   return (glm::determinant(linear) < 0 ? -1.0f : 1.0f) * area_vector_transform(linear);
+}
+
+vec3 shading_normal(const TracedScene& scene, uint32_t triangle, vec2 weights) {
+  const TracedTriangle& face = scene.triangles()[triangle];
+  const TracedPart& part = scene.parts()[face.part];
+  const std::vector<vec3>& normals = part.source->normals;
+  if (normals.empty()) return face.normal;
+  const mat3 to_world = normal_transform(scene.scene().instances[part.instance].transform);
+  const uint32_t* index = &part.source->indices[3 * size_t{face.source}];
+  // Each is made unit in the world before they are mixed: as vertices have them, and as shaders do.
+  const auto at = [&](int k) { return normalize_or(to_world * normals[index[k]], face.normal); };
+  return normalize_or((1 - weights.x - weights.y) * at(0) + weights.x * at(1) + weights.y * at(2),
+                      face.normal);
+}
+
+void turn_to_shading_normal(const TracedScene& scene, Receiver& receiver) {
+  const vec3& flat = scene.triangles()[receiver.triangle].normal;
+  const vec3 normal = shading_normal(scene, receiver.triangle, receiver.weights);
+  const float cosine = dot(normal, flat);
+  if (!(cosine > kMistaken) || cosine > kSame) return;
+  receiver.normal = receiver.back ? -normal : normal;
+  receiver.surface = receiver.back ? -flat : flat;
 }
 
 bool is_buried(const TracedScene& scene, const Receiver& receiver) {

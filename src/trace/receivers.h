@@ -13,7 +13,7 @@ struct Receiver {
   static constexpr uint32_t kNowhere = 0xffffffffu;
   vec3 point{0};
   vec3 normal{0};                ///< unit: of the plane that light is measured on
-  vec3 surface{0};               ///< unit: of the surface, where a normal texture bends `normal`; else 0
+  vec3 surface{0};               ///< unit: of the surface, where `normal` is bent from it; else 0
   vec3 origin{0};                ///< where rays start: a little above the surface, off its edges
   uint32_t triangle = kNowhere;  ///< of a random or given place: TracedScene::triangles()
   vec2 weights{0};               ///< there, of corners 1 and 2
@@ -29,8 +29,7 @@ struct Receiver {
 
 /// `count` points spread evenly by area over all sides that receive light: fronts, and backs of what is
 /// two-sided. Holes of alpha masks are left out. Point i does not depend on `count`. Empty when nothing
-/// receives. Normal textures do not bend these normals: what they are compared with is interpolated from
-/// vertices, and the viewer bends it.
+/// receives. Their normals are the faces' own.
 std::vector<Receiver> random_receivers(const TracedScene& scene, uint64_t count, uint32_t seed);
 
 /// All vertices that triangles use, by instance, primitive and vertex, once a side; their normals are the
@@ -47,6 +46,15 @@ struct PlacedReceiver {
   float distance = 0;
 };
 PlacedReceiver place_receiver(const TracedScene& scene, const vec3& point, const vec3& unit_normal);
+
+/// What lies between the file's vertex normals at a place, unit, of the front; the face's own where there are
+/// none.
+vec3 shading_normal(const TracedScene& scene, uint32_t triangle, vec2 weights);
+
+/// Turns a receiver on a triangle to the shading normal: the light of smooth surfaces is told for that, as
+/// viewers shade them. Not where it leans so far from the face that it is a mistake. Normal textures do not
+/// bend it: what is interpolated from vertices the viewer bends itself.
+void turn_to_shading_normal(const TracedScene& scene, Receiver& receiver);
 
 /// Bends the receiver's normal by the normal texture at its triangle and weights: `front` is the unit normal
 /// of the front there, and the receiver may be on either side. Sets `surface` where it does.

@@ -25,20 +25,7 @@ TexelRaster raster_of(const TracedScene& scene, const TracedPart& part, const st
   return rasterise_texels(triangles, layout.width, layout.height);
 }
 
-/// Unit, to the front.
-vec3 shading_normal(const TracedScene& scene, const TracedPart& part, const mat3& normal_map,
-                    uint32_t triangle, vec2 weights) {
-  const vec3& flat = scene.triangles()[triangle].normal;
-  const std::vector<vec3>& normals = part.source->normals;
-  if (normals.empty()) return flat;
-  const uint32_t* index = &part.source->indices[3 * size_t{scene.triangles()[triangle].source}];
-  // Each is made unit in the world before they are mixed: as vertices have them, and as shaders do.
-  const auto at = [&](int k) { return normalize_or(normal_map * normals[index[k]], flat); };
-  return normalize_or((1 - weights.x - weights.y) * at(0) + weights.x * at(1) + weights.y * at(2), flat);
-}
-
 std::vector<Receiver> fronts_of(const TracedScene& scene, const TracedPart& part, const TexelRaster& raster) {
-  const mat3 normal_map = normal_transform(scene.scene().instances[part.instance].transform);
   std::vector<Receiver> fronts(raster.texels.size());
   parallel_for(
       fronts.size(),
@@ -48,7 +35,7 @@ std::vector<Receiver> fronts_of(const TracedScene& scene, const TracedPart& part
         r.triangle = part.first_triangle + texel.triangle;
         r.weights = texel.weights;
         r.point = scene.point(r.triangle, r.weights);
-        r.normal = shading_normal(scene, part, normal_map, r.triangle, r.weights);
+        r.normal = shading_normal(scene, r.triangle, r.weights);
         r.origin = ray_origin(scene, r.triangle, r.point, scene.triangles()[r.triangle].normal);
         r.instance = part.instance;
         r.primitive = part.primitive;

@@ -82,6 +82,38 @@ TEST(Receivers, NormalsOfTheFileAreTransformed) {
   EXPECT_LT(length(n - normalize(vec3(0.5f, 0, 1))), 1e-6f);
 }
 
+// A square whose vertex normals lean outwards, as on a pillow.
+TEST(Receivers, TurnToWhatLiesBetweenVertexNormals) {
+  Scene scene;
+  add(scene, square(1, 0, true), diffuse(0.5f));
+  scene.materials.back().double_sided = true;
+  Primitive& primitive = scene.meshes[0].primitives[0];
+  for (const vec3& p : primitive.positions) primitive.normals.push_back(normalize(vec3(0.5f * p.x, 0, 1)));
+  const Traced t(std::move(scene));
+  for (Receiver r : random_receivers(*t.traced, 50, 5)) {
+    const vec3 flat = r.normal;
+    turn_to_shading_normal(*t.traced, r);
+    // Sines are linear between the sides, cosines alike all over.
+    const vec3 expected = normalize(vec3(0.5f * r.point.x, 0, 1)) * flat.z;
+    EXPECT_NEAR(length(r.normal - expected), 0, 1e-5f) << r.point.x;
+    EXPECT_EQ(r.surface, flat);
+    EXPECT_GT(dot(r.normal, flat), 0);
+  }
+}
+
+TEST(Receivers, KeepTheFacesNormalWhereTheFileIsMistaken) {
+  Scene scene;
+  add(scene, square(1, 0, true), diffuse(0.5f));
+  add(scene, square(1, 1, true), diffuse(0.5f));
+  scene.meshes[0].primitives[0].normals.assign(4, vec3(0, 0, -1));
+  const Traced t(std::move(scene));
+  for (Receiver r : random_receivers(*t.traced, 50, 5)) {
+    turn_to_shading_normal(*t.traced, r);
+    EXPECT_EQ(r.normal, vec3(0, 0, 1));
+    EXPECT_EQ(r.surface, vec3(0));
+  }
+}
+
 TEST(Receivers, PlacedOnTheNearestSurface) {
   const Traced t(three_squares());
   const PlacedReceiver on = place_receiver(*t.traced, vec3(0.3f, 0.2f, 0), vec3(0, 0, 1));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/check.h"
 #include "math/colour.h"
-#include "trace/scrambled_sobol.h"
 
 namespace goldthread {
 namespace {
@@ -89,7 +89,9 @@ EmitterTable::EmitterTable(const TracedScene& scene)
   double before = 0;
   for (Emitter& e : emitters_) {
     e.up_to = &e == &emitters_.back() ? 1 : e.up_to / total;
-    e.density = static_cast<float>((e.up_to - before) / static_cast<double>(scene.area(e.triangle)));
+    e.from = before;
+    e.per_share = 1 / (e.up_to - e.from);
+    e.density = static_cast<float>((e.up_to - e.from) / static_cast<double>(scene.area(e.triangle)));
     density_[e.triangle] = e.density;
     before = e.up_to;
   }
@@ -101,12 +103,26 @@ EmitterTable::EmitterTable(const TracedScene& scene)
   }
 }
 
-const Emitter& EmitterTable::sample(double u, double v, vec2& weights) const {
-  size_t i = guide_[static_cast<size_t>(u * static_cast<double>(guide_.size()))];
-  while (emitters_[i].up_to <= u) ++i;
-  const double low = i > 0 ? emitters_[i - 1].up_to : 0;
-  weights = to_triangle(std::clamp((u - low) / (emitters_[i].up_to - low), 0.0, 1.0), v);
+const Emitter& EmitterTable::at(double share) const {
+  size_t i = guide_[static_cast<size_t>(share * static_cast<double>(guide_.size()))];
+  while (emitters_[i].up_to <= share) ++i;
   return emitters_[i];
+}
+
+void EmitterTable::sample(std::span<const SobolPoint> points, EmitterPoints& drawn) const {
+  GOLDTHREAD_CHECK_LE(points.size(), kLanes);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double u = unit_double(points[i].u);
+    const Emitter& e = at(u);
+    const vec2 weights =
+        to_triangle(std::clamp((u - e.from) * e.per_share, 0.0, 1.0), unit_double(points[i].v));
+    drawn.points.set(i, e.corner + weights.x * e.across + weights.y * e.up);
+    drawn.normals.set(i, e.normal);
+    drawn.density[i] = e.density;
+    drawn.two_sided[i] = e.double_sided ? 1.0f : 0.0f;
+    drawn.emitters[i] = &e;
+    drawn.weights[i] = weights;
+  }
 }
 
 vec3 EmitterTable::nits(const Emitter& emitter, vec2 weights) const {

@@ -1,8 +1,12 @@
 // Which triangles shine, and a point on one of them drawn in proportion to their power.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "trace/lanes.h"
+#include "trace/scrambled_sobol.h"
 #include "trace/traced_scene.h"
 
 namespace goldthread {
@@ -12,11 +16,21 @@ struct Emitter {
   vec3 corner{0}, across{0}, up{0};  ///< corner 0, and from it to corners 1 and 2, world
   vec3 normal{0};                    ///< unit, to the front
   vec3 nits{0};                      ///< where it is `even`
-  double up_to = 0;                  ///< running sum of shares of power, this one's included; ends in 1
+  double from = 0, up_to = 0;        ///< running sums of shares of power, without this one's and with it; to 1
+  double per_share = 0;              ///< 1 / (up_to - from)
   float density = 0;                 ///< points per m2: its share of all power over its area
   uint32_t triangle = 0;
   bool double_sided = false;
   bool even = true;  ///< one luminance all over, and opaque
+};
+
+/// Points that were drawn, one a path.
+struct EmitterPoints {
+  Vec3Lanes points, normals;  ///< world; unit, to the front
+  FloatLanes density;         ///< points per m2
+  FloatLanes two_sided;       ///< 1, or 0
+  std::array<const Emitter*, kLanes> emitters;
+  std::array<vec2, kLanes> weights;  ///< barycentric, of corners 1 and 2
 };
 
 /// The emitting triangles of a scene with their share of its light. Where a texture leaves a triangle dark at
@@ -28,8 +42,8 @@ class EmitterTable {
   bool empty() const { return emitters_.empty(); }
 
   /// A point drawn by power, evenly within each triangle: maps the unit square onto the emitters, so that
-  /// even points stay even. `weights` are of corners 1 and 2. The table must not be empty.
-  const Emitter& sample(double u, double v, vec2& weights) const;
+  /// even points stay even. The table must not be empty, and `points` are at most kLanes.
+  void sample(std::span<const SobolPoint> points, EmitterPoints& drawn) const;
   /// Luminance times coverage at a point.
   vec3 nits(const Emitter& emitter, vec2 weights) const;
 
@@ -39,6 +53,8 @@ class EmitterTable {
   float density(uint32_t triangle) const { return density_[triangle]; }
 
  private:
+  const Emitter& at(double share) const;
+
   const TracedScene& scene_;
   std::vector<Emitter> emitters_;
   std::vector<uint32_t> guide_;  ///< first emitter whose up_to exceeds i / guide_.size() (Chen and Asau 1974)

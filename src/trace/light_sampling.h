@@ -1,29 +1,19 @@
 // The light that reaches a point directly, one sample at a time, and the densities that multiple importance
 // sampling weighs samples by (Veach and Guibas 1995).
 #pragma once
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "trace/emitter_table.h"
+#include "trace/lamp.h"
+#include "trace/lanes.h"
 #include "trace/scrambled_sobol.h"
 #include "trace/sky_table.h"
 #include "trace/traced_scene.h"
 
 namespace goldthread {
-
-/// One way by which light may come.
-struct LightSample {
-  vec3 irradiance{0};  ///< lux: what it brings unless something is in between, over the sample's density
-  Ray shadow;          ///< from the point to the light
-  float cosine = 0;    ///< between that way and the receiver's normal; of what has a density
-  float density = 0;   ///< of its direction, 1/sr; 0 for lamps, which no other strategy can find
-};
-
-/// A direction about `normal` with density cosine / pi.
-vec3 cosine_direction(const vec3& normal, SobolPoint p);
-/// A direction of even density 1 / 4 pi.
-vec3 even_direction(SobolPoint p);
 
 /// The share of a sample of density `own` where another strategy has density `other` (power heuristic,
 /// exponent 2).
@@ -33,41 +23,20 @@ inline float power_heuristic(float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// A lamp, with what its cone needs of sines and cosines worked out. From a place point, spot and directional
-/// lights are discs of directions of one luminance, or, without size, one direction; area lamps are what they
-/// are. No other strategy finds any of them: rays pass through.
-class Lamp {
- public:
-  explicit Lamp(const Light& light);
+/// A LightSample of each of some places.
+struct LightSamples {
+  std::array<vec3, kLanes> irradiance;
+  Vec3Lanes ways;  ///< of the rays that ask, from the places
+  FloatLanes far;  ///< of these rays
+  FloatLanes cosine, density;
 
-  /// Share of the intensity that it brings to a plane of unit `normal` unless something is in between, 1/m2;
-  /// of the illuminance, if it is directional. Of a lamp with size more than that: all that it could, were
-  /// its disc as high above the plane as any of it is; of an area lamp about that, and 0 only where it brings
-  /// nothing.
-  float share_at(const vec3& origin, const vec3& normal) const;
-  /// Light from one direction of the disc, or one place of an area lamp, and the way there. `p` counts only
-  /// for a lamp with size.
-  LightSample light_at(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  float brightness() const { return brightness_; }  ///< luminance of the intensity
-  bool has_size() const { return light_.angular_diameter > 0 || light_.radius > 0 || light_.has_area(); }
-
- private:
-  struct View {
-    vec3 axis{0};        // unit, to the lamp's centre
-    float distance = 0;  // metres; 0 for a directional light
-    float sine = 0;      // of the disc's angular radius
-    float strength = 0;  // share of the intensity on a plane that faces the lamp, 1/m2
-  };
-  View view_from(const vec3& origin) const;
-  float area_share_at(const vec3& origin, const vec3& normal) const;
-  LightSample area_light_at(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  vec2 place_on(SobolPoint p) const;
-  float cone(const vec3& d) const;
-  float reach(float distance) const;
-
-  Light light_;
-  float brightness_, cos_outer_, cone_scale_;
-  mat3 frame_;  // the lamp's own axes in the world
+  void set(size_t i, const LightSample& light) {
+    irradiance[i] = light.irradiance;
+    ways.set(i, light.shadow.direction);
+    far[i] = light.shadow.far;
+    cosine[i] = light.cosine;
+    density[i] = light.density;
+  }
 };
 
 /// Draws light for points of a scene, which must outlive it.
@@ -81,24 +50,26 @@ class LightSampler {
   size_t lamp_count() const { return lamps_.size(); }
   bool has_lamps_with_size() const { return lamps_with_size_; }
 
-  /// One point of one emitting triangle, drawn by power. `origin` is off its surface already; `normal` is
-  /// unit.
-  LightSample sample_emitter(const vec3& origin, const vec3& normal, SobolPoint p) const;
+  /// One point of one emitting triangle for each place, drawn by power.
+  void sample_emitters(const Places& at, std::span<const SobolPoint> points, LightSamples& lights) const;
   /// One direction to the sky: of a uniform one by the cosine, which alone is worth following; else by
   /// luminance.
-  LightSample sample_sky(const vec3& origin, const vec3& normal, SobolPoint p) const;
-  /// One lamp, drawn by what it would bring were nothing in between, and of one
-  /// with size a direction. `sums` is room to work in, lamp_count() long.
-  LightSample sample_lamp(const vec3& origin, const vec3& normal, double u, SobolPoint p,
-                          std::span<float> sums) const;
+  void sample_sky(const Places& at, std::span<const SobolPoint> points, LightSamples& lights) const;
+  /// One lamp, drawn with `choices`' first numbers by what it would bring were nothing in between, and of one
+  /// with size a direction; without such lamps `points` may be empty. `sums` is room to work in,
+  /// lamp_count() long.
+  void sample_lamps(const Places& at, std::span<const SobolPoint> choices, std::span<const SobolPoint> points,
+                    std::span<FloatLanes> sums, LightSamples& lights) const;
 
-  /// Density, 1/sr, with which sample_emitter takes the direction in which a ray has met an emitter after
+  /// Density, 1/sr, with which sample_emitters takes the direction in which a ray has met an emitter after
   /// `distance` metres at the given cosine between ray and normal.
   float emitter_density(uint32_t triangle, float distance, float cosine) const;
   /// Density, 1/sr, with which sample_sky takes a unit direction at that cosine to the receiver's normal.
   float sky_density(const vec3& direction, float cosine) const;
 
  private:
+  LightSample sky_sample(const vec3& normal, SobolPoint p) const;
+
   const TracedScene& scene_;
   EmitterTable emitters_;
   std::optional<SkyTable> sky_table_;  ///< of a sky that is not uniform

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/wide.h"
+#include "trace/directions.h"
 
 namespace goldthread {
 namespace {
@@ -85,7 +87,8 @@ class Bundle {
   void ask_emitters(uint32_t& pair);
   void ask_sky(uint32_t& pair);
   void ask_lamps(uint32_t& pair);
-  void ask(const Path& path, const LightSample& light);
+  void look_around();
+  void ask();
   void collect(std::span<vec3> sums);
   void send_on(uint32_t& pair);
   void bounce(bool sure, std::span<vec3> sums);
@@ -97,6 +100,7 @@ class Bundle {
   const LightSampler& lights_;
   PathCost& count_;
   Few<Path, kBundle> paths_;
+  Places places_;  ///< of paths_
   Few<PathSeed, kBundle> seeds_;  ///< of paths_
   Few<SobolPoint, kBundle> choices_, points_, sides_;
   Few<Ray, kBundle> rays_;
@@ -105,7 +109,9 @@ class Bundle {
   Few<Ray, 3 * kBundle> shadows_;
   Few<Promise, 3 * kBundle> promises_;  ///< of shadows_
   Few<vec3, 3 * kBundle> passed_;       ///< of shadows_
-  std::vector<float> lamp_sums_;
+  LightSamples samples_;
+  Vec3Lanes directions_;
+  std::vector<FloatLanes> lamp_sums_;
 };
 
 void Bundle::closest(std::span<const Ray> rays, std::span<Hit> hits) {
@@ -134,6 +140,7 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
     if (!sure || lights_.has_lamps()) draw(pair, choices_);
     shadows_.clear();
     promises_.clear();
+    look_around();
     if (lights_.has_emitters()) ask_emitters(pair);
     if (lights_.has_sky()) ask_sky(pair);
     if (lights_.has_lamps()) ask_lamps(pair);
@@ -144,36 +151,59 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
   }
 }
 
+void Bundle::look_around() {
+  places_.count = paths_.size();
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    places_.points.set(i, paths_[i].point);
+    places_.normals.set(i, paths_[i].normal);
+  }
+}
+
 void Bundle::ask_emitters(uint32_t& pair) {
   draw(pair, points_);
-  for (size_t i = 0; i < paths_.size(); ++i)
-    ask(paths_[i], lights_.sample_emitter(paths_[i].point, paths_[i].normal, points_[i]));
+  lights_.sample_emitters(places_, points_.all(), samples_);
+  ask();
 }
 
 void Bundle::ask_sky(uint32_t& pair) {
   draw(pair, points_);
-  for (size_t i = 0; i < paths_.size(); ++i)
-    ask(paths_[i], lights_.sample_sky(paths_[i].point, paths_[i].normal, points_[i]));
+  lights_.sample_sky(places_, points_.all(), samples_);
+  ask();
 }
 
 void Bundle::ask_lamps(uint32_t& pair) {
-  const bool sized = lights_.has_lamps_with_size();
-  if (sized) draw(pair, points_);
-  for (size_t i = 0; i < paths_.size(); ++i)
-    ask(paths_[i], lights_.sample_lamp(paths_[i].point, paths_[i].normal, unit_double(choices_[i].u),
-                                       sized ? points_[i] : SobolPoint(), lamp_sums_));
+  points_.clear();
+  if (lights_.has_lamps_with_size()) draw(pair, points_);
+  lights_.sample_lamps(places_, choices_.all(), points_.all(), lamp_sums_, samples_);
+  ask();
 }
 
-void Bundle::ask(const Path& path, const LightSample& light) {
-  if (!(largest(light.irradiance) > 0)) return;
-  const float weight = light.density > 0 ? power_heuristic(light.density, light.cosine / kPi) : 1.0f;
-  // What it brings is that of the point; the ray that asks starts above it and ends where it would.
-  Ray shadow = light.shadow;
-  shadow.origin = path.origin;
-  if (std::isfinite(shadow.far)) shadow.direction += path.point - path.origin;
-  if (dot(path.surface, shadow.direction) < 0) return;
-  shadows_.push_back(shadow);
-  promises_.push_back({path.throughput * light.irradiance * weight, path.slot});
+/// Weighs light samples, of strategies that have a density, against what bounces find.
+GOLDTHREAD_WIDE_CLONES void weigh(const LightSamples& lights, size_t count, FloatLanes& __restrict weights) {
+  for (size_t i = 0; i < count; ++i) {
+    const float weight = power_heuristic(lights.density[i], lights.cosine[i] / kPi);
+    weights[i] = lights.density[i] > 0 ? weight : 1.0f;
+  }
+}
+
+/// Has the ray caster asked, with the others, for the light of samples_.
+void Bundle::ask() {
+  FloatLanes weights;
+  weigh(samples_, paths_.size(), weights);
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    const Path& path = paths_[i];
+    const vec3& light = samples_.irradiance[i];
+    if (!(largest(light) > 0)) continue;
+    // What it brings is that of the point; the ray that asks starts above it and ends where it would.
+    Ray shadow;
+    shadow.origin = path.origin;
+    shadow.direction = samples_.ways[i];
+    shadow.far = samples_.far[i];
+    if (std::isfinite(shadow.far)) shadow.direction += path.point - path.origin;
+    if (dot(path.surface, shadow.direction) < 0) continue;
+    shadows_.push_back(shadow);
+    promises_.push_back({path.throughput * light * weights[i], path.slot});
+  }
 }
 
 void Bundle::collect(std::span<vec3> sums) {
@@ -187,12 +217,13 @@ void Bundle::collect(std::span<vec3> sums) {
 
 void Bundle::send_on(uint32_t& pair) {
   draw(pair, points_);
+  cosine_directions(places_.normals, points_.all(), directions_);
   rays_.resize(paths_.size());
   hits_.resize(paths_.size());
   for (size_t i = 0; i < paths_.size(); ++i) {
     rays_[i] = Ray();
     rays_[i].origin = paths_[i].origin;
-    rays_[i].direction = cosine_direction(paths_[i].normal, points_[i]);
+    rays_[i].direction = directions_[i];
   }
   closest(rays_.all(), hits_.all());
 }

@@ -49,8 +49,8 @@ constexpr uint32_t kLensPair = 1;
 /// Paths through a scene. Thread safe; refers to the scene, which must outlive it.
 class PathTracer {
  public:
-  /// So many paths go together; more than that at once are no quicker.
-  static constexpr size_t kBundle = 64;
+  /// So many paths go together.
+  static constexpr size_t kBundle = kLanes;
 
   explicit PathTracer(const TracedScene& scene) : scene_(scene), lights_(scene) {}
 

@@ -1,18 +1,12 @@
 #include "trace/scrambled_sobol.h"
 
 #include "base/check.h"
-
-// Hashes and scramblings are a hundred integer operations a point, which eight lanes do at once where the
-// processor has them. No number depends on it.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define GOLDTHREAD_WIDE_CLONES __attribute__((target_clones("default", "avx2")))
-#else
-#define GOLDTHREAD_WIDE_CLONES
-#endif
+#include "base/wide.h"
 
 namespace goldthread {
 namespace {
 
+// Hashes and scramblings are a hundred integer operations a point.
 GOLDTHREAD_WIDE_CLONES void sobol_points(const PathSeed* paths, size_t count, uint32_t pair,
                                          SobolPoint* points) {
   for (size_t i = 0; i < count; ++i) points[i] = sobol_point(paths[i].index, hash(paths[i].seed, pair));

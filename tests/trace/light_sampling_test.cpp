@@ -1,5 +1,6 @@
 #include "trace/light_sampling.h"
 
+#include "trace/directions.h"
 #include "trace/traced.h"
 
 namespace goldthread {
@@ -27,6 +28,17 @@ Scene lamps_over_floor() {
   return scene;
 }
 
+/// `count` times the same place.
+Places places(const vec3& x, const vec3& n, size_t count = 1) {
+  Places at;
+  at.count = count;
+  for (size_t i = 0; i < count; ++i) {
+    at.points.set(i, x);
+    at.normals.set(i, n);
+  }
+  return at;
+}
+
 TEST(LightSampling, EmitterDensityIntegratesToOne) {
   const Traced t(lamps_over_floor());
   const vec3 x(0.1f, 0.2f, 0.001f);
@@ -50,17 +62,19 @@ TEST(LightSampling, DrawnDensityIsTheReportedOne) {
   const vec3 x(0.1f, 0.2f, 0.001f), n(0, 0, 1);
   int checked = 0;
   for (uint32_t i = 0; i < 1000; ++i) {
-    const LightSample light = t.tracer->lights().sample_emitter(x, n, point(i));
-    if (light.density == 0) continue;
+    const SobolPoint p = point(i);
+    LightSamples light;
+    t.tracer->lights().sample_emitters(places(x, n), {&p, 1}, light);
+    if (light.density[0] == 0) continue;
     Ray ray;
     ray.origin = x;
-    ray.direction = normalize(light.shadow.direction);
+    ray.direction = normalize(light.ways[0]);
     const Meeting met = t.traced->closest(ray);
     if (met.missed()) continue;  // on the very edge
     ++checked;
     const float density =
         t.tracer->lights().emitter_density(met.triangle, met.distance, -dot(met.normal, ray.direction));
-    EXPECT_NEAR(density / light.density, 1, 2e-3f);
+    EXPECT_NEAR(density / light.density[0], 1, 2e-3f);
   }
   EXPECT_GT(checked, 900);
 }
@@ -78,10 +92,12 @@ TEST(LightSampling, EmittersAreDrawnByPower) {
   EXPECT_EQ(table.density(4), 0);
   std::vector<int> drawn(6, 0);
   for (uint32_t i = 0; i < 10000; ++i) {
-    vec2 weights;
     const SobolPoint p = point(i);
-    const Emitter& emitter = table.sample(unit_double(p.u), unit_double(p.v), weights);
-    ++drawn[emitter.triangle];
+    EmitterPoints one;
+    table.sample({&p, 1}, one);
+    const vec2 weights = one.weights[0];
+    ++drawn[one.emitters[0]->triangle];
+    EXPECT_LT(length(one.points[0] - t.traced->point(one.emitters[0]->triangle, weights)), 1e-6f);
     EXPECT_GE(std::min({weights.x, weights.y, 1 - weights.x - weights.y}), -1e-6f);
   }
   EXPECT_NEAR(drawn[0], 1000, 5);
@@ -174,23 +190,122 @@ TEST(LightSampling, LampsAreDrawnByWhatTheyBring) {
   const Traced t(std::move(scene));
   const LightSampler& lights = t.tracer->lights();
   const vec3 up(0, 0, 1);
-  std::vector<float> sums(lights.lamp_count());
+  std::vector<FloatLanes> sums(lights.lamp_count());
   std::vector<int> drawn(lights.lamp_count(), 0);
   float whole = 0;
   for (const Light& light : t.scene->lights)
     whole += Lamp(light).light_at(vec3(0), up, point(0)).irradiance.x;
-  constexpr int kCount = 10000;
-  for (int i = 0; i < kCount; ++i) {
-    const LightSample light = lights.sample_lamp(vec3(0), up, (i + 0.5) / kCount, point(0), sums);
-    EXPECT_NEAR(light.irradiance.x, whole, 1e-5f * whole);
-    ++drawn[size_t(std::lround(light.shadow.direction.x))];
-    EXPECT_GT(light.shadow.direction.z, 0);
+  LightSamples light;
+  constexpr uint32_t kCount = 10000;
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const SobolPoint choice{uint32_t((i + 0.5) / kCount * 0x1p32), 0};
+    lights.sample_lamps(places(vec3(0), up), {&choice, 1}, {}, sums, light);
+    EXPECT_NEAR(light.irradiance[0].x, whole, 1e-5f * whole);
+    ++drawn[size_t(std::lround(light.ways[0].x))];
+    EXPECT_GT(light.ways[0].z, 0);
   }
   for (size_t i = 0; i < 5; ++i) {
     const float brings = Lamp(t.scene->lights[i]).light_at(vec3(0), up, point(0)).irradiance.x;
     EXPECT_NEAR(drawn[i], kCount * double(brings / whole), 1.5) << i;
   }
-  EXPECT_EQ(lights.sample_lamp(vec3(0), -up, 0.999999, point(0), sums).shadow.direction.z, -2);
+  const SobolPoint last{0xffffffffu, 0};
+  lights.sample_lamps(places(vec3(0), -up), {&last, 1}, {}, sums, light);
+  EXPECT_EQ(light.ways[0].z, -2);
+}
+
+/// Places all over the unit cube, facing all ways.
+Places many_places(size_t count) {
+  Places at;
+  at.count = count;
+  for (uint32_t i = 0; i < count; ++i) {
+    const SobolPoint p = point(i), q = sobol_point(i, 77);
+    at.points.set(i, vec3(unit_double(p.u), unit_double(p.v), unit_double(q.u)));
+    at.normals.set(i, even_direction(q));
+  }
+  return at;
+}
+
+// A path is not to know how many go with it: one in a bundle of any size is what it is alone.
+TEST(LightSampling, ManyDirectionsAreThoseOfEach) {
+  for (const size_t count : {size_t{1}, size_t{7}, size_t{21}, kLanes}) {
+    const Places at = many_places(count);
+    std::array<SobolPoint, kLanes> points;
+    for (uint32_t i = 0; i < count; ++i) points[i] = point(100 + i);
+    Vec3Lanes directions;
+    cosine_directions(at.normals, {points.data(), count}, directions);
+    for (size_t i = 0; i < count; ++i) EXPECT_EQ(directions[i], cosine_direction(at.normals[i], points[i]));
+  }
+}
+
+// About the z axis the second number is the angle, and the first the squared sine.
+TEST(LightSampling, DirectionsTurnAllTheWayRound) {
+  for (uint32_t i = 0; i < 4096; ++i) {
+    const SobolPoint p = i < 64 ? SobolPoint{0xffffffffu - i, i << 26} : point(i);
+    const double angle = 2 * M_PI * unit_double(p.v), radius = std::sqrt(unit_double(p.u));
+    const vec3 d = cosine_direction(vec3(0, 0, 1), p);
+    EXPECT_NEAR(d.x, radius * std::cos(angle), 3e-7) << p.v;
+    EXPECT_NEAR(d.y, radius * std::sin(angle), 3e-7) << p.v;
+    EXPECT_NEAR(d.z, std::sqrt(1 - unit_double(p.u)), 3e-7) << p.u;
+  }
+}
+
+void expect_same(const LightSamples& many, size_t i, const LightSamples& one) {
+  EXPECT_EQ(many.irradiance[i], one.irradiance[0]) << i;
+  EXPECT_EQ(many.ways[i], one.ways[0]) << i;
+  EXPECT_EQ(many.far[i], one.far[0]) << i;
+  EXPECT_EQ(many.density[i], one.density[0]) << i;
+}
+
+TEST(LightSampling, ManyPlacesGetTheLightOfEach) {
+  Scene scene = lamps_over_floor();
+  Light spot = lamp(LightKind::kSpot, 3, vec3(0.5f, 0.2f, 2)), ball = lamp(LightKind::kPoint, 2, vec3(0, 0, 3));
+  spot.range = 4;
+  ball.radius = 0.2f;
+  scene.lights = {lamp(LightKind::kPoint, 1, vec3(1, 1, 1)), spot, ball,
+                  lamp(LightKind::kDirectional, 5, vec3(0))};
+  scene.sky.radiance = vec3(2);
+  const Traced t(std::move(scene));
+  const LightSampler& lights = t.tracer->lights();
+  std::vector<FloatLanes> sums(lights.lamp_count());
+  std::array<SobolPoint, kLanes> choices, points;
+  for (uint32_t i = 0; i < kLanes; ++i) {
+    choices[i] = point(i);
+    points[i] = point(1000 + i);
+  }
+  const Places at = many_places(kLanes);
+  LightSamples emitted, sky, lamps, alone;
+  lights.sample_emitters(at, points, emitted);
+  lights.sample_sky(at, points, sky);
+  lights.sample_lamps(at, choices, points, sums, lamps);
+  for (size_t i = 0; i < kLanes; ++i) {
+    const Places one = places(at.points[i], at.normals[i]);
+    lights.sample_emitters(one, {&points[i], 1}, alone);
+    expect_same(emitted, i, alone);
+    lights.sample_sky(one, {&points[i], 1}, alone);
+    expect_same(sky, i, alone);
+    lights.sample_lamps(one, {&choices[i], 1}, {&points[i], 1}, sums, alone);
+    expect_same(lamps, i, alone);
+  }
+}
+
+TEST(LightSampling, SharesOfManyPlacesAreThoseOfEach) {
+  Light spot = lamp(LightKind::kSpot, 1, vec3(0.3f, 0.4f, 2));
+  spot.inner_cone = 0.2f;
+  spot.range = 2;
+  Light ball = lamp(LightKind::kPoint, 1, vec3(0.5f, 0.5f, 1.5f));
+  ball.radius = 0.3f;
+  const Places at = many_places(kLanes - 3);
+  for (const Light& light : {lamp(LightKind::kPoint, 1, vec3(0.5f)), spot, ball,
+                             lamp(LightKind::kDirectional, 1, vec3(0))}) {
+    FloatLanes shares;
+    Lamp(light).shares_at(at, shares);
+    float sum = 0;
+    for (size_t i = 0; i < at.count; ++i) {
+      EXPECT_EQ(shares[i], Lamp(light).share_at(at.points[i], at.normals[i])) << i;
+      sum += shares[i];
+    }
+    EXPECT_GT(sum, 0);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Skies that are not the same all over, by path tracing: against their integrals and each other.
 #include "scene/small_skies.h"
+#include "trace/directions.h"
 #include "trace/sky_table.h"
 #include "trace/traced.h"
 

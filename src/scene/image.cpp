@@ -20,10 +20,10 @@ vec2 placed(const Texture& texture, vec2 uv) {
 /// Column or row of a texel that may lie outside of the picture.
 uint32_t wrapped(int64_t texel, uint32_t size, Wrap wrap) {
   const int64_t n = int64_t(size);
-  if (texel >= 0 && texel < n) return uint32_t(texel);  // nearly always, and divisions are slow
+  if (texel >= 0 && texel < n) return uint32_t(texel);  // often, and divisions are slow
   if (wrap == Wrap::kClamp) return uint32_t(std::clamp<int64_t>(texel, 0, n - 1));
-  if (wrap == Wrap::kRepeat) return uint32_t(((texel % n) + n) % n);
-  const int64_t m = ((texel % (2 * n)) + 2 * n) % (2 * n);
+  const int64_t period = wrap == Wrap::kRepeat ? n : 2 * n, rest = texel % period;
+  const int64_t m = rest < 0 ? rest + period : rest;
   return uint32_t(m < n ? m : 2 * n - 1 - m);
 }
 
@@ -33,13 +33,15 @@ struct Neighbours {
   float weight;
 };
 
-Neighbours neighbours(float coordinate, uint32_t size, Wrap wrap) {
+inline Neighbours neighbours(float coordinate, uint32_t size, Wrap wrap) {
   // Beyond 1e6 repeats a float has no fraction left; infinite and undefined coordinates end up there too.
   const float bounded = std::isfinite(coordinate) ? std::clamp(coordinate, -1e6f, 1e6f) : 0.0f;
   const double texel = double(bounded) * size - 0.5;
   int64_t below = int64_t(texel);
   if (double(below) > texel) --below;  // as std::floor, which is a call
-  return {wrapped(below, size, wrap), wrapped(below + 1, size, wrap), float(texel - double(below))};
+  const uint32_t first = wrapped(below, size, wrap);
+  const bool inside = wrap == Wrap::kRepeat && first + 1 < size;
+  return {first, inside ? first + 1 : wrapped(below + 1, size, wrap), float(texel - double(below))};
 }
 
 template <typename Decode>
@@ -53,55 +55,51 @@ std::array<float, 256> table_of(const Decode& decode) {
 const std::array<float, 256> kShares = table_of([](float share) { return share; });
 const std::array<float, 256> kLinear = table_of(srgb_to_linear);
 
-/// Where in an image a lookup finds its four texels, and their weights.
-struct Footprint {
-  const uint8_t *top = nullptr, *bottom = nullptr;  ///< rows; null where there is no image
-  Neighbours u{0, 0, 0}, v{0, 0, 0};
-};
-
-Footprint footprint(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
-  Footprint f;
-  if (!texture.present() || size_t(texture.image) >= images.size()) return f;
-  const Image& image = images[size_t(texture.image)];
-  if (image.empty()) return f;
-  const vec2 at = placed(texture, uv);
-  f.u = neighbours(at.x, image.width, texture.wrap_u);
-  f.v = neighbours(at.y, image.height, texture.wrap_v);
-  f.top = &image.rgba[size_t(f.v.first) * image.width * 4];
-  f.bottom = &image.rgba[size_t(f.v.second) * image.width * 4];
-  return f;
+TexelView image_of(const Texture& texture, const std::vector<Image>& images) {
+  const bool known = texture.present() && size_t(texture.image) < images.size();
+  return known ? TexelView(images[size_t(texture.image)]) : TexelView();
 }
 
-inline vec4 texel_at(const uint8_t* row, uint32_t x, bool srgb) {
-  const uint8_t* t = row + size_t(x) * 4;
-  const std::array<float, 256>& colour = srgb ? kLinear : kShares;
+inline vec4 texel_at(const uint8_t* t, const std::array<float, 256>& colour) {
   return {colour[t[0]], colour[t[1]], colour[t[2]], kShares[t[3]]};
-}
-
-vec4 sample(const Texture& texture, const std::vector<Image>& images, vec2 uv, bool srgb) {
-  const Footprint f = footprint(texture, images, uv);
-  if (f.top == nullptr) return vec4(1);
-  const auto mixed = [&](const uint8_t* row) {
-    return glm::mix(texel_at(row, f.u.first, srgb), texel_at(row, f.u.second, srgb), f.u.weight);
-  };
-  return glm::mix(mixed(f.top), mixed(f.bottom), f.v.weight);
 }
 
 }  // namespace
 
-vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
-  return sample(texture, images, uv, true);
+TextureLookup::TextureLookup(const Texture& texture, const TexelView& image, vec2 uv) {
+  if (image.rgba == nullptr) return;
+  const vec2 at = placed(texture, uv);
+  const Neighbours u = neighbours(at.x, image.width, texture.wrap_u);
+  const Neighbours v = neighbours(at.y, image.height, texture.wrap_v);
+  top_ = image.rgba + size_t(v.first) * image.width * 4;
+  bottom_ = image.rgba + size_t(v.second) * image.width * 4;
+  left_ = u.first * 4;
+  right_ = u.second * 4;
+  weights_ = {u.weight, v.weight};
 }
 
-void prefetch_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
-  const Footprint f = footprint(texture, images, uv);
-  if (f.top == nullptr) return;
-  __builtin_prefetch(f.top + size_t(f.u.first) * 4);
-  __builtin_prefetch(f.bottom + size_t(f.u.first) * 4);
+vec4 TextureLookup::mixed(const std::array<float, 256>& decoded) const {
+  if (top_ == nullptr) return vec4(1);
+  const auto across = [&](const uint8_t* row) {
+    return glm::mix(texel_at(row + left_, decoded), texel_at(row + right_, decoded), weights_.x);
+  };
+  return glm::mix(across(top_), across(bottom_), weights_.y);
+}
+
+vec4 TextureLookup::colour() const {
+  return mixed(kLinear);
+}
+
+vec4 TextureLookup::data() const {
+  return mixed(kShares);
+}
+
+vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
+  return TextureLookup(texture, image_of(texture, images), uv).colour();
 }
 
 vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
-  return sample(texture, images, uv, false);
+  return TextureLookup(texture, image_of(texture, images), uv).data();
 }
 
 }  // namespace goldthread

@@ -1,5 +1,6 @@
 // A picture in memory, and how a texture looks one up.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -44,14 +45,48 @@ struct Texture {
   bool present() const { return image >= 0; }
 };
 
-/// Bilinear lookup. `uv` before the texture transform. Colour is returned linear, alpha as stored, in 0..1.
-/// An absent or empty image gives white.
+/// An image's texels, wherever they lie.
+struct TexelView {
+  TexelView() = default;
+  explicit TexelView(const Image& image)
+      : rgba(image.empty() ? nullptr : image.rgba.data()), width(image.width), height(image.height) {}
+
+  const uint8_t* rgba = nullptr;  ///< as Image::rgba; null of an empty image
+  uint32_t width = 0, height = 0;
+};
+
+/// A bilinear lookup that is worked out but not made: where its texels are, so that memory can be asked for
+/// them some time before they are needed. Refers to the image, which must outlive it.
+class TextureLookup {
+ public:
+  /// Of no image: white.
+  TextureLookup() = default;
+  /// In the image that `texture` uses; `uv` before the texture transform.
+  TextureLookup(const Texture& texture, const TexelView& image, vec2 uv);
+
+  /// Asks memory for what the lookup will read, and does not wait for it.
+  void prefetch() const {
+    __builtin_prefetch(top_ + left_);
+    __builtin_prefetch(bottom_ + left_);
+  }
+  /// Colour linear, alpha as stored, in 0..1.
+  vec4 colour() const;
+  /// All four as stored, in 0..1: of data textures (metallic, roughness).
+  vec4 data() const;
+
+ private:
+  /// With what a byte of the three colours stands for.
+  vec4 mixed(const std::array<float, 256>& decoded) const;
+
+  const uint8_t *top_ = nullptr, *bottom_ = nullptr;  // rows; null where there is no image
+  uint32_t left_ = 0, right_ = 0;                     // bytes from a row's begin
+  vec2 weights_{0};                                   // of right and bottom
+};
+
+/// TextureLookup::colour at once. An absent or empty image gives white.
 vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
 
-/// The same without the sRGB decoding, for data textures (metallic, roughness).
+/// TextureLookup::data at once.
 vec4 sample_data_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
-
-/// Asks memory for what either lookup will read, and does not wait for it.
-void prefetch_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv);
 
 }  // namespace goldthread

@@ -16,9 +16,9 @@ struct Emitter {
   vec3 corner{0}, across{0}, up{0};  ///< corner 0, and from it to corners 1 and 2, world
   vec3 normal{0};                    ///< unit, to the front
   vec3 nits{0};                      ///< where it is `even`
-  double from = 0, up_to = 0;        ///< running sums of shares of power, without this one's and with it; to 1
-  double per_share = 0;              ///< 1 / (up_to - from)
-  float density = 0;                 ///< points per m2: its share of all power over its area
+  double from = 0, up_to = 0;  ///< running sums of shares of power, without this one's and with it; to 1
+  double per_share = 0;        ///< 1 / (up_to - from)
+  float density = 0;           ///< points per m2: its share of all power over its area
   uint32_t triangle = 0;
   bool double_sided = false;
   bool even = true;  ///< one luminance all over, and opaque

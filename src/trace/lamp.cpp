@@ -39,9 +39,9 @@ inline float reach(const Lamp::Beam& beam, float distance) {
 /// Lamp::share_at of a lamp that is its beam; all is worked out and then chosen from, for many at once.
 inline float beam_share(const Lamp::Beam& beam, const vec3& origin, const vec3& normal) {
   const vec3 d = beam.position - origin;
-  const float height = dot(d, normal), squared = dot(d, d), distance = std::sqrt(squared);
-  const float share = height * cone_share(beam, -dot(d, beam.axis) / distance) * reach(beam, distance) /
-                      (squared * distance);
+  const float height = dot(d, normal), distance = std::sqrt(dot(d, d)), per_metre = 1 / distance;
+  const float share = height * cone_share(beam, -dot(d, beam.axis) * per_metre) * reach(beam, distance) *
+                      (per_metre * per_metre * per_metre);
   return height > 0 ? share : 0.0f;
 }
 
@@ -119,8 +119,7 @@ LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p)
   if (light_.has_area()) return area_light_at(origin, normal, p);
   if (!has_size()) return light_of_share(origin, share_at(origin, normal));
   const View view = view_from(origin);
-  if (!(view.sine > 0))
-    return light_of_share(origin, view.strength * std::max(0.0f, dot(view.axis, normal)));
+  if (!(view.sine > 0)) return light_of_share(origin, view.strength * std::max(0.0f, dot(view.axis, normal)));
   LightSample light;
   light.shadow.origin = origin;
   const float aside = view.sine * std::sqrt(static_cast<float>(unit_double(p.u)));

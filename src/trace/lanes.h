@@ -1,5 +1,5 @@
-// What is known of many paths at once, by coordinate: so that a loop over them needs no shuffling to be worked
-// out several at a time.
+// What is known of many paths at once, by coordinate: so that a loop over them needs no shuffling to be
+// worked out several at a time.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -41,6 +41,7 @@ class Few {
   void resize(size_t size) { size_ = size; }
   size_t size() const { return size_; }
   T& operator[](size_t i) { return storage_.items[i]; }
+  const T& operator[](size_t i) const { return storage_.items[i]; }
   std::span<T> all() { return {storage_.items.data(), size_}; }
 
  private:
@@ -68,6 +69,13 @@ struct Promise {
   uint32_t slot = 0;
 };
 
+/// Ways that paths go, by coordinate. Where they end is known of those only that end on a live side.
+struct Flights {
+  Vec3Lanes origins, directions;
+  FloatLanes distances{};  ///< in lengths of the directions
+  Vec3Lanes normals{};     ///< where they end: Meeting::normal
+};
+
 /// Some paths on the same bounce.
 class Bundle {
  public:
@@ -76,8 +84,6 @@ class Bundle {
 
   /// Adds what each start receives to `sums`. At most kBundle starts.
   void trace(std::span<const PathStart> starts, std::span<vec3> sums);
-  /// Where rays end.
-  void closest(std::span<const Ray> rays, std::span<Hit> hits);
 
  private:
   void draw(uint32_t& pair, Few<SobolPoint, kBundle>& points) {
@@ -89,37 +95,33 @@ class Bundle {
   void ask_lamps(uint32_t& pair);
   void look_around();
   void ask();
+  void cast();
   void collect(std::span<vec3> sums);
   void send_on(uint32_t& pair);
   void bounce(bool sure, std::span<vec3> sums);
-  bool arrive(const Ray& ray, const Meeting& met, double side, Path& path, vec3& sum) const;
-  void choose_side(const Meeting& met, double side, Path& path) const;
+  bool arrive(size_t i, double side, Path& path, vec3& sum) const;
+  void choose_side(const vec3& normal, const Diffuse& diffuse, double side, Path& path) const;
   vec3 emission_found(const Path& path, const Ray& ray, const Meeting& met) const;
 
   const TracedScene& scene_;
   const LightSampler& lights_;
   PathCost& count_;
   Few<Path, kBundle> paths_;
-  Places places_;  ///< of paths_
+  Places places_;                 ///< of paths_
   Few<PathSeed, kBundle> seeds_;  ///< of paths_
   Few<SobolPoint, kBundle> choices_, points_, sides_;
   Few<Ray, kBundle> rays_;
   Few<Hit, kBundle> hits_;
   Few<Meeting, kBundle> meetings_;
+  Few<TextureLookup, kBundle> base_colours_;  ///< where meetings_ are live
   Few<Ray, 3 * kBundle> shadows_;
   Few<Promise, 3 * kBundle> promises_;  ///< of shadows_
   Few<vec3, 3 * kBundle> passed_;       ///< of shadows_
   LightSamples samples_;
-  Vec3Lanes directions_;
+  Flights flights_;
+  FloatLanes density_ratios_;
   std::vector<FloatLanes> lamp_sums_;
 };
-
-void Bundle::closest(std::span<const Ray> rays, std::span<Hit> hits) {
-  const auto begin = Clock::now();
-  scene_.caster().closest(rays, hits);
-  count_.ray_nanoseconds += nanoseconds_since(begin);
-  count_.rays += rays.size();
-}
 
 // E = integral of L cos = E[pi L] over cosine-distributed directions, and the L that comes back from a
 // diffuse surface is rho E / pi: so a path's throughput, relative to irradiance, is the product of
@@ -144,8 +146,9 @@ void Bundle::trace(std::span<const PathStart> starts, std::span<vec3> sums) {
     if (lights_.has_emitters()) ask_emitters(pair);
     if (lights_.has_sky()) ask_sky(pair);
     if (lights_.has_lamps()) ask_lamps(pair);
-    collect(sums);
     send_on(pair);
+    cast();
+    collect(sums);
     if (scene_.has_translucent()) draw(pair, sides_);
     bounce(sure, sums);
   }
@@ -206,26 +209,55 @@ void Bundle::ask() {
   }
 }
 
-void Bundle::collect(std::span<vec3> sums) {
-  passed_.resize(shadows_.size());
-  const auto begin = Clock::now();
-  scene_.caster().transmittance(shadows_.all(), passed_.all());
-  count_.ray_nanoseconds += nanoseconds_since(begin);
-  count_.rays += shadows_.size();
-  for (size_t i = 0; i < promises_.size(); ++i) sums[promises_[i].slot] += promises_[i].lux * passed_[i];
-}
-
 void Bundle::send_on(uint32_t& pair) {
   draw(pair, points_);
-  cosine_directions(places_.normals, points_.all(), directions_);
+  cosine_directions(places_.normals, points_.all(), flights_.directions);
   rays_.resize(paths_.size());
-  hits_.resize(paths_.size());
   for (size_t i = 0; i < paths_.size(); ++i) {
     rays_[i] = Ray();
     rays_[i].origin = paths_[i].origin;
-    rays_[i].direction = directions_[i];
+    rays_[i].direction = flights_.directions[i];
+    flights_.origins.set(i, paths_[i].origin);
   }
-  closest(rays_.all(), hits_.all());
+}
+
+/// All rays of this bounce: looks at the clock cost time, too.
+void Bundle::cast() {
+  passed_.resize(shadows_.size());
+  hits_.resize(rays_.size());
+  const auto begin = Clock::now();
+  scene_.caster().transmittance(shadows_.all(), passed_.all());
+  scene_.caster().closest(rays_.all(), hits_.all());
+  count_.ray_nanoseconds += nanoseconds_since(begin);
+  count_.rays += shadows_.size() + rays_.size();
+}
+
+void Bundle::collect(std::span<vec3> sums) {
+  for (size_t i = 0; i < promises_.size(); ++i) sums[promises_[i].slot] += promises_[i].lux * passed_[i];
+}
+
+// A ray that starts a little above its point meets y with another density than one from the point itself
+// would: cos cos' / r² of the one over that of the other makes up for it. Without, light from close by would
+// be off by the lift over the distance, twice. Nought where the point does not see y.
+GOLDTHREAD_WIDE_CLONES void density_ratios(const Places& from, const Flights& flights, float epsilon,
+                                           FloatLanes& __restrict ratios) {
+  const Vec3Lanes &points = from.points, &normals = from.normals, &origins = flights.origins,
+                  &ways = flights.directions, &there = flights.normals;
+  for (size_t i = 0; i < from.count; ++i) {
+    const vec3 way(ways.x[i], ways.y[i], ways.z[i]), point(points.x[i], points.y[i], points.z[i]);
+    const vec3 origin(origins.x[i], origins.y[i], origins.z[i]);
+    const vec3 n(normals.x[i], normals.y[i], normals.z[i]), n_there(there.x[i], there.y[i], there.z[i]);
+    const float distance = flights.distances[i];
+    const vec3 d = origin + distance * way - point;
+    const float squared = dot(d, d), lifted_squared = distance * distance, cosine = dot(n, d);
+    const float cosines = cosine * -dot(n_there, d);
+    const float lifted_cosines = dot(n, way) * -dot(n_there, way);
+    const float ratio = cosines * lifted_squared / (lifted_cosines * squared * squared);
+    const bool seen = cosine > 0 && cosines > 0 && lifted_cosines > 0;
+    // In a corner, a few lifts from the walls, the ratio is anything; and there all looks the same from a
+    // little further off, so that nothing has to be made up for.
+    ratios[i] = distance < 32 * epsilon ? 1.0f : seen ? ratio : 0.0f;
+  }
 }
 
 /// Adds what was met to the sums, and keeps those paths that go on. What is read of each is asked for while
@@ -234,18 +266,25 @@ void Bundle::bounce(bool sure, std::span<vec3> sums) {
   for (const Hit& hit : hits_.all()) scene_.prefetch(hit);
   meetings_.resize(paths_.size());
   for (size_t i = 0; i < paths_.size(); ++i) {
+    const Meeting& met = meetings_[i];
     scene_.meet(rays_[i], hits_[i], meetings_[i]);
-    if (meetings_[i].live) scene_.prefetch_texcoords(meetings_[i].triangle);
+    if (!met.live) continue;
+    scene_.prefetch_texcoords(met.triangle);
+    flights_.distances[i] = met.distance;
+    flights_.normals.set(i, met.normal);
   }
-  for (const Meeting& met : meetings_.all())
-    if (met.live) scene_.prefetch_texels(met.triangle, met.weights);
+  density_ratios(places_, flights_, scene_.epsilon(), density_ratios_);
+  base_colours_.resize(paths_.size());
+  for (size_t i = 0; i < paths_.size(); ++i)
+    if (meetings_[i].live)
+      base_colours_[i] = scene_.begin_lookup(meetings_[i].triangle, meetings_[i].weights);
   size_t kept = 0;
   for (size_t i = 0; i < paths_.size(); ++i) {
     Path path = paths_[i];
     if (dot(path.surface, rays_[i].direction) < 0) continue;
     path.surface = vec3(0);
     const double side = scene_.has_translucent() ? unit_double(sides_[i].u) : 0;
-    if (!arrive(rays_[i], meetings_[i], side, path, sums[path.slot])) continue;
+    if (!arrive(i, side, path, sums[path.slot])) continue;
     if (!sure) {
       const float survival = std::clamp(largest(path.throughput), kLeastSurvival, kMostSurvival);
       if (unit_double(choices_[i].v) >= static_cast<double>(survival)) continue;
@@ -259,22 +298,7 @@ void Bundle::bounce(bool sure, std::span<vec3> sums) {
   seeds_.resize(kept);
 }
 
-// A ray that starts a little above its point meets y with another density than one from the point itself
-// would: cos cos' / r² of the one over that of the other makes up for it. Without, light from close by would
-// be off by the lift over the distance, twice. Nought where the point does not see y.
-float density_ratio(const Path& path, const Ray& ray, const Meeting& met, float epsilon) {
-  // In a corner, a few lifts from the walls, the ratio is anything; and there all looks the same from a
-  // little further off, so that nothing has to be made up for.
-  if (met.distance < 32 * epsilon) return 1;
-  const vec3 d = ray.origin + met.distance * ray.direction - path.point;
-  const float squared = dot(d, d), lifted_squared = met.distance * met.distance;
-  const float cosines = dot(path.normal, d) * -dot(met.normal, d);
-  const float lifted_cosines = dot(path.normal, ray.direction) * -dot(met.normal, ray.direction);
-  if (!(dot(path.normal, d) > 0) || !(cosines > 0) || !(lifted_cosines > 0)) return 0;
-  return cosines * lifted_squared / (lifted_cosines * squared * squared);
-}
-
-/// The other half of direct light: what bounces find by themselves, weighed against sample_emitter.
+/// The other half of direct light: what bounces find by themselves, weighed against sample_emitters.
 vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met) const {
   const vec3 nits = scene_.emission(met);
   if (!(largest(nits) > 0)) return vec3(0);
@@ -285,25 +309,27 @@ vec3 Bundle::emission_found(const Path& path, const Ray& ray, const Meeting& met
   return kPi * power_heuristic(cosine / kPi, density) * nits;
 }
 
-/// Diffuse light goes on to either side of what is translucent: to which, `side` (0..1) says.
-void Bundle::choose_side(const Meeting& met, double side, Path& path) const {
-  const vec3 back = scene_.reflectance(met.triangle, met.weights);
-  const vec3 through = scene_.translucence(met.triangle, met.weights);
-  if (through == vec3(0)) {
-    path.throughput *= back;
+/// Diffuse light goes on to either side of what is translucent: to which, `side` (0..1) says. `normal` is
+/// that of the side where it came from.
+void Bundle::choose_side(const vec3& normal, const Diffuse& diffuse, double side, Path& path) const {
+  path.normal = normal;
+  if (diffuse.through == vec3(0)) {
+    path.throughput *= diffuse.back;
     return;
   }
-  const float likely = largest(through) / (largest(back) + largest(through));
+  const float likely = largest(diffuse.through) / (largest(diffuse.back) + largest(diffuse.through));
   if (side < static_cast<double>(likely)) {
-    path.throughput *= through / likely;
-    path.normal = -met.normal;
+    path.throughput *= diffuse.through / likely;
+    path.normal = -normal;
   } else {
-    path.throughput *= back / (1 - likely);
+    path.throughput *= diffuse.back / (1 - likely);
   }
 }
 
-/// Moves the path to where its ray has ended; false when it ends there, too.
-bool Bundle::arrive(const Ray& ray, const Meeting& met, double side, Path& path, vec3& sum) const {
+/// Moves the path to where its ray, of number `i`, has ended; false when it ends there, too.
+bool Bundle::arrive(size_t i, double side, Path& path, vec3& sum) const {
+  const Ray& ray = rays_[i];
+  const Meeting& met = meetings_[i];
   path.throughput *= met.tint;
   if (met.missed()) {
     const float cosine = std::max(0.0f, dot(path.normal, ray.direction));
@@ -314,13 +340,11 @@ bool Bundle::arrive(const Ray& ray, const Meeting& met, double side, Path& path,
     return false;
   }
   if (!met.live) return false;
-  const float share = density_ratio(path, ray, met, scene_.epsilon());
-  if (!(share > 0)) return false;
-  path.throughput *= share;
+  if (!(density_ratios_[i] > 0)) return false;
+  path.throughput *= density_ratios_[i];
   sum += path.throughput * emission_found(path, ray, met);
   path.point = ray.origin + met.distance * ray.direction;
-  path.normal = met.normal;
-  choose_side(met, side, path);
+  choose_side(met.normal, scene_.diffuse(met.triangle, met.weights, base_colours_[i]), side, path);
   path.origin = path.point + scene_.epsilon() * path.normal;
   return largest(path.throughput) > 0;
 }
@@ -347,11 +371,13 @@ void PathTracer::irradiance(std::span<const PathStart> starts, std::span<vec3> l
 void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits, PathCost& count) const {
   GOLDTHREAD_CHECK_EQ(seen.size(), nits.size());
   const auto begin = Clock::now();
-  Bundle bundle(scene_, lights_, count);
   std::vector<Ray> rays;
   std::vector<Hit> hits(seen.size());
   for (const CameraPath& path : seen) rays.push_back(path.ray);
-  bundle.closest(rays, hits);
+  const auto cast = Clock::now();
+  scene_.caster().closest(rays, hits);
+  count.ray_nanoseconds += nanoseconds_since(cast);
+  count.rays += rays.size();
   std::vector<PathStart> starts;
   std::vector<vec3> reflectance, tints(seen.size(), vec3(1));
   std::vector<size_t> pixels;
@@ -379,8 +405,9 @@ void PathTracer::radiance(std::span<const CameraPath> seen, std::span<vec3> nits
         reflectance.push_back(share / kPi);
         pixels.push_back(i);
       };
-      start(met.normal, scene_.reflectance(met.triangle, met.weights));
-      start(-met.normal, scene_.translucence(met.triangle, met.weights));
+      const Diffuse diffuse = scene_.diffuse(met.triangle, met.weights);
+      start(met.normal, diffuse.back);
+      start(-met.normal, diffuse.through);
     }
   }
   count.path_nanoseconds += nanoseconds_since(begin);

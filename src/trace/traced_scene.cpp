@@ -24,6 +24,13 @@ bool is_even(const TracedPart& part) {
          !m.diffuse_transmission_texture.present() && !m.diffuse_transmission_colour_texture.present();
 }
 
+/// Whether reflectance is a colour times that of its texture.
+bool is_textured(const TracedPart& part) {
+  const Material& m = *part.material;
+  return part.source->colours.empty() && part.base_colour_texture.present() &&
+         !m.metallic_texture.present() && !m.unlit && !m.is_glass() && !m.is_translucent();
+}
+
 uint8_t set_of(const Texture& texture) {
   return std::min<uint8_t>(texture.texcoord, 1);
 }
@@ -148,7 +155,7 @@ void add_sky(Fingerprint& print, const Sky& sky) {
 
 }  // namespace
 
-TracedScene::TracedScene(const Scene& scene) : scene_(scene) {
+TracedScene::TracedScene(const Scene& scene) : scene_(scene), texels_(scene.images) {
   for (uint32_t i = 0; i < scene.instances.size(); ++i)
     for (uint32_t p = 0; p < scene.meshes[scene.instances[i].mesh].primitives.size(); ++p) add(i, p);
   std::vector<uint8_t> see_through;
@@ -175,6 +182,17 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
   part.primitive = primitive;
   part.source = &source;
   part.material = &scene_.materials[source.material];
+  for (const Texture* texture : textures_of(*part.material))
+    if (texture->present() && texture != &part.material->base_colour_texture)
+      part.other_textures.push_back(texture);
+  part.base_colour_texture = part.material->base_colour_texture;
+  part.base_colour_texels = texels_[part.base_colour_texture];
+  part.textured = is_textured(part);
+  part.tint = part.material->base_colour * (1 - part.material->metallic);
+  part.unlit = part.material->unlit;
+  part.lit_behind = part.material->lit_behind();
+  part.translucent = part.material->is_translucent();
+  part.shines = part.material->emits() && !part.unlit;
   part.first_triangle = static_cast<uint32_t>(triangles_.size());
   const std::vector<uint8_t> used = texcoord_sets(*part.material, source);
   for (uint32_t t = 0; t < source.triangle_count(); ++t) {
@@ -189,20 +207,19 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
     triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t});
   }
   part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
-  has_translucent_ |= part.triangle_count > 0 && part.material->is_translucent();
+  has_translucent_ |= part.triangle_count > 0 && part.translucent;
   const bool even = part.triangle_count > 0 && is_even(part);
   parts_.push_back(std::move(part));
   TracedPart& added = parts_.back();
   if (!even) return;
-  added.reflectance = reflectance(added.first_triangle, vec2(0));
+  added.diffuse = diffuse(added.first_triangle, vec2(0));
   added.emission = emission(added.first_triangle, vec2(0));
-  added.translucence = translucence(added.first_triangle, vec2(0));
   added.even = true;
 }
 
 bool TracedScene::is_live(uint32_t triangle, const vec3& direction) const {
-  const Material& m = material(triangle);
-  return !m.unlit && (m.lit_behind() || dot(triangles_[triangle].normal, direction) < 0);
+  const TracedPart& part = parts_[triangles_[triangle].part];
+  return !part.unlit && (part.lit_behind || dot(triangles_[triangle].normal, direction) < 0);
 }
 
 Meeting TracedScene::closest(const Ray& ray) const {
@@ -217,13 +234,13 @@ void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.tint = hit.tint;
   if (hit.missed()) return;
   const TracedTriangle& triangle = triangles_[hit.triangle];
-  const Material& m = *parts_[triangle.part].material;
+  const TracedPart& part = parts_[triangle.part];
   const bool from_front = dot(triangle.normal, ray.direction) < 0;
   met.distance = hit.distance;
   met.weights = hit.weights;
   met.normal = from_front ? triangle.normal : -triangle.normal;
-  met.live = !m.unlit && (from_front || m.lit_behind());
-  if (!met.live && !m.unlit) look_for_front(ray, met);
+  met.live = !part.unlit && (from_front || part.lit_behind);
+  if (!met.live && !part.unlit) look_for_front(ray, met);
 }
 
 void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
@@ -252,45 +269,59 @@ T TracedScene::interpolate(const std::vector<T>& values, uint32_t triangle, vec2
          weights.y * values[index[2]];
 }
 
-vec2 TracedScene::texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const {
-  const TracedPart& part = parts_[triangles_[triangle].part];
+vec2 TracedScene::texcoord(const TracedPart& part, const Texture& texture, uint32_t triangle,
+                           vec2 weights) const {
   const std::vector<CornerTexcoords>& set = part.texcoords[set_of(texture)];
   if (set.empty()) return vec2(0);
   const CornerTexcoords& corners = set[triangle - part.first_triangle];
   return (1 - weights.x - weights.y) * corners[0] + weights.x * corners[1] + weights.y * corners[2];
 }
 
-void TracedScene::prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+TextureLookup TracedScene::lookup(const TracedPart& part, const Texture& texture, uint32_t triangle,
+                                  vec2 weights) const {
+  return {texture, texels_[texture], texcoord(part, texture, triangle, weights)};
+}
+
+TextureLookup TracedScene::base_colour_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const Texture& texture = part.base_colour_texture;
+  if (!texture.present()) return {};
+  return {texture, part.base_colour_texels, texcoord(part, texture, triangle, weights)};
+}
+
+TextureLookup TracedScene::begin_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+  const TextureLookup base_colour = base_colour_lookup(part, triangle, weights);
+  base_colour.prefetch();
+  for (const Texture* texture : part.other_textures) lookup(part, *texture, triangle, weights).prefetch();
+  return base_colour;
+}
+
+vec4 TracedScene::base_colour(const TracedPart& part, uint32_t triangle, vec2 weights,
+                              const TextureLookup& texel) const {
   const Material& m = *part.material;
-  for (const Texture* texture : textures_of(m))
-    if (texture->present()) prefetch_texture(*texture, scene_.images, texcoord(*texture, triangle, weights));
+  const vec4 colour = vec4(m.base_colour, m.alpha) * texel.colour();
+  return part.source->colours.empty() ? colour
+                                      : colour * interpolate(part.source->colours, triangle, weights);
 }
 
 vec4 TracedScene::base_colour(uint32_t triangle, vec2 weights) const {
   const TracedPart& part = parts_[triangles_[triangle].part];
-  const Material& m = *part.material;
-  vec4 colour(m.base_colour, m.alpha);
-  if (m.base_colour_texture.present())
-    colour *= sample_texture(m.base_colour_texture, scene_.images,
-                             texcoord(m.base_colour_texture, triangle, weights));
-  if (!part.source->colours.empty()) colour *= interpolate(part.source->colours, triangle, weights);
-  return colour;
+  return base_colour(part, triangle, weights, base_colour_lookup(part, triangle, weights));
 }
 
-TracedScene::Diffuse TracedScene::diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
+Diffuse TracedScene::diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights,
+                                const TextureLookup& base_colour_texel) const {
   const Material& m = *part.material;
   if (m.unlit) return {};
   const float metallic = factor(m.metallic, m.metallic_texture, 2, triangle, weights);
   if (metallic == 1) return {};
   Diffuse diffuse;
-  diffuse.back =
-      glm::clamp(vec3(base_colour(triangle, weights)) * (1 - metallic), vec3(0), vec3(kMaxReflectance));
+  diffuse.back = glm::clamp(vec3(base_colour(part, triangle, weights, base_colour_texel)) * (1 - metallic),
+                            vec3(0), vec3(kMaxReflectance));
   if (m.is_translucent()) {
     const float share = factor(m.diffuse_transmission, m.diffuse_transmission_texture, 3, triangle, weights);
     const Texture& texture = m.diffuse_transmission_colour_texture;
     vec3 colour = m.diffuse_transmission_colour;
-    if (texture.present())
-      colour *= vec3(sample_texture(texture, scene_.images, texcoord(texture, triangle, weights)));
+    if (texture.present()) colour *= vec3(lookup(part, texture, triangle, weights).colour());
     diffuse.through = share * (1 - metallic) * glm::clamp(colour, vec3(0), vec3(1));
     diffuse.back *= 1 - share;
     // The two together may not be more than the one is otherwise.
@@ -312,7 +343,8 @@ TracedScene::Diffuse TracedScene::diffuse_at(const TracedPart& part, uint32_t tr
 float TracedScene::factor(float value, const Texture& texture, int channel, uint32_t triangle,
                           vec2 weights) const {
   if (!(value > 0) || !texture.present()) return value;
-  return value * sample_data_texture(texture, scene_.images, texcoord(texture, triangle, weights))[channel];
+  const TracedPart& part = parts_[triangles_[triangle].part];
+  return value * lookup(part, texture, triangle, weights).data()[channel];
 }
 
 /// Share of what alpha leaves that lets light straight on, but for its colour.
@@ -324,11 +356,9 @@ float TracedScene::glass_share(uint32_t triangle, vec2 weights) const {
 
 vec3 TracedScene::emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const {
   const Material& m = *part.material;
-  if (m.unlit || !m.emits()) return vec3(0);
   vec3 nits = m.emission;
   if (m.emission_texture.present())
-    nits *= vec3(
-        sample_texture(m.emission_texture, scene_.images, texcoord(m.emission_texture, triangle, weights)));
+    nits *= vec3(lookup(part, m.emission_texture, triangle, weights).colour());
   if (!m.is_glass()) return nits;
   const float all = coverage(triangle, weights);
   return all > 0 ? nits * (alpha_coverage(triangle, weights) / all) : vec3(0);

@@ -8,11 +8,18 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "trace/texel_store.h"
 #include "visibility/ray_caster.h"
 
 namespace goldthread {
 
 using CornerTexcoords = std::array<vec2, 3>;  ///< of a triangle's corners 0, 1 and 2
+
+/// Where light that a point stops goes on diffusely, as shares of it.
+struct Diffuse {
+  vec3 back{0};     ///< to the side that it came from: reflectance
+  vec3 through{0};  ///< to the other side: translucence
+};
 
 /// The triangles of one primitive of one instance.
 struct TracedPart {
@@ -22,10 +29,17 @@ struct TracedPart {
   uint32_t first_triangle = 0, triangle_count = 0;
   /// By set, of each triangle, side by side; empty where no texture asks for them.
   std::array<std::vector<CornerTexcoords>, 2> texcoords;
-  bool even = false;     ///< no texture and no vertex colour: the next two hold all over
-  vec3 reflectance{0};   ///< as TracedScene::reflectance
-  vec3 emission{0};      ///< as TracedScene::emission
-  vec3 translucence{0};  ///< as TracedScene::translucence
+  std::vector<const Texture*> other_textures;  ///< that say what a point does with light, besides base colour
+  /// What the material says of itself, where paths need not go far for it.
+  bool unlit = false, lit_behind = false, translucent = false;
+  bool shines = false;    ///< emits, and is not unlit
+  bool even = false;      ///< no texture and no vertex colour: the next two hold all over
+  Diffuse diffuse;        ///< as TracedScene::diffuse
+  vec3 emission{0};       ///< as TracedScene::emission
+  bool textured = false;  ///< nothing but the texture of its base colour makes it uneven:
+  vec3 tint{0};           ///< reflectance is this times its colour
+  Texture base_colour_texture;
+  TexelView base_colour_texels;
 };
 
 /// One triangle of the world.
@@ -65,30 +79,35 @@ class TracedScene {
   /// Share of light that gets along the ray from near to far, in the channel that passes best.
   float transmittance(const Ray& ray) const { return caster_->transmittance(ray); }
 
-  /// Diffuse reflectance at a point for the rays that are stopped there: base colour x texture x vertex
-  /// colour x (1 - metallic), within 0 and kMaxReflectance; 0 where the material is unlit. Not times
+  /// Diffuse light at a point for the rays that are stopped there. Reflectance is base colour x texture x
+  /// vertex colour x (1 - metallic), within 0 and kMaxReflectance; 0 where the material is unlit. Not times
   /// coverage; of glass it is the diffuse share of all light over coverage.
-  vec3 reflectance(uint32_t triangle, vec2 weights) const {
+  Diffuse diffuse(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
-    return part.even ? part.reflectance : diffuse_at(part, triangle, weights).back;
+    return diffuse(triangle, weights,
+                   part.even ? TextureLookup() : base_colour_lookup(part, triangle, weights));
+  }
+  /// The same where `begin_lookup` has said, of the same point, where its base colour is.
+  Diffuse diffuse(uint32_t triangle, vec2 weights, const TextureLookup& base_colour) const {
+    const TracedPart& part = parts_[triangles_[triangle].part];
+    if (part.even) return part.diffuse;
+    if (part.textured)
+      return {glm::clamp(part.tint * vec3(base_colour.colour()), vec3(0), vec3(kMaxReflectance)), vec3(0)};
+    return diffuse_at(part, triangle, weights, base_colour);
   }
   /// Emitted luminance, nits, over coverage just so; 0 where the material is unlit.
   vec3 emission(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
+    if (!part.shines) return vec3(0);
     return part.even ? part.emission : emission_at(part, triangle, weights);
   }
   /// The same of what is met: nothing from the back of what is translucent and yet one-sided.
   vec3 emission(const Meeting& met) const {
     const TracedPart& part = parts_[triangles_[met.triangle].part];
-    const bool dark = part.material->is_translucent() && !part.material->double_sided &&
+    if (!part.shines) return vec3(0);
+    const bool dark = part.translucent && !part.material->double_sided &&
                       dot(met.normal, triangles_[met.triangle].normal) < 0;
     return dark ? vec3(0) : emission(met.triangle, met.weights);
-  }
-  /// Share of the light that is stopped at a point which leaves diffusely on the other side.
-  vec3 translucence(uint32_t triangle, vec2 weights) const {
-    const TracedPart& part = parts_[triangles_[triangle].part];
-    if (!part.material->is_translucent()) return vec3(0);
-    return part.even ? part.translucence : diffuse_at(part, triangle, weights).through;
   }
   /// Whether anything is translucent.
   bool has_translucent() const { return has_translucent_; }
@@ -96,15 +115,16 @@ class TracedScene {
   void prefetch(const Hit& hit) const {
     if (!hit.missed()) __builtin_prefetch(&triangles_[hit.triangle]);
   }
-  /// The same for what `reflectance` and `emission` read of a point: first where its texels are, then these.
+  /// The same for what `begin_lookup` reads of a triangle.
   void prefetch_texcoords(uint32_t triangle) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
     for (const std::vector<CornerTexcoords>& set : part.texcoords)
       if (!set.empty()) __builtin_prefetch(&set[triangle - part.first_triangle]);
   }
-  void prefetch_texels(uint32_t triangle, vec2 weights) const {
+  /// The same for what `diffuse` and `emission` read of a point's textures; says where its base colour is.
+  TextureLookup begin_lookup(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
-    if (!part.even) prefetch_textures(part, triangle, weights);
+    return part.even ? TextureLookup() : begin_lookup(part, triangle, weights);
   }
   /// Share of rays that a point stops, 0..1: 0 or 1 for a mask, the clamped alpha for a blend; of glass, what
   /// neither alpha nor transmission lets through.
@@ -128,26 +148,26 @@ class TracedScene {
 
  private:
   void add(uint32_t instance, uint32_t primitive);
-  /// Diffuse light on either side of a point, as shares of what is stopped there.
-  struct Diffuse {
-    vec3 back{0};     ///< to where it came from
-    vec3 through{0};  ///< to the other side
-  };
-  Diffuse diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  Diffuse diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights,
+                     const TextureLookup& base_colour_texel) const;
   vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
-  void prefetch_textures(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  vec2 texcoord(const TracedPart& part, const Texture& texture, uint32_t triangle, vec2 weights) const;
+  TextureLookup lookup(const TracedPart& part, const Texture& texture, uint32_t triangle, vec2 weights) const;
+  TextureLookup base_colour_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  TextureLookup begin_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const;
+  vec4 base_colour(const TracedPart& part, uint32_t triangle, vec2 weights, const TextureLookup& texel) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
   float factor(float value, const Texture& texture, int channel, uint32_t triangle, vec2 weights) const;
   float glass_share(uint32_t triangle, vec2 weights) const;
   float alpha_coverage(uint32_t triangle, vec2 weights) const;
   Passing passing(uint32_t triangle, vec2 weights) const;
-  vec2 texcoord(const Texture& texture, uint32_t triangle, vec2 weights) const;
   template <typename T>
   T interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const;
   bool is_live(uint32_t triangle, const vec3& direction) const;
   void look_for_front(const Ray& ray, Meeting& met) const;
 
   const Scene& scene_;
+  TexelStore texels_;
   std::vector<TracedPart> parts_;
   std::vector<TracedTriangle> triangles_;
   std::vector<vec3> positions_;  ///< world

@@ -258,7 +258,8 @@ void expect_same(const LightSamples& many, size_t i, const LightSamples& one) {
 
 TEST(LightSampling, ManyPlacesGetTheLightOfEach) {
   Scene scene = lamps_over_floor();
-  Light spot = lamp(LightKind::kSpot, 3, vec3(0.5f, 0.2f, 2)), ball = lamp(LightKind::kPoint, 2, vec3(0, 0, 3));
+  Light spot = lamp(LightKind::kSpot, 3, vec3(0.5f, 0.2f, 2)),
+        ball = lamp(LightKind::kPoint, 2, vec3(0, 0, 3));
   spot.range = 4;
   ball.radius = 0.2f;
   scene.lights = {lamp(LightKind::kPoint, 1, vec3(1, 1, 1)), spot, ball,
@@ -295,8 +296,8 @@ TEST(LightSampling, SharesOfManyPlacesAreThoseOfEach) {
   Light ball = lamp(LightKind::kPoint, 1, vec3(0.5f, 0.5f, 1.5f));
   ball.radius = 0.3f;
   const Places at = many_places(kLanes - 3);
-  for (const Light& light : {lamp(LightKind::kPoint, 1, vec3(0.5f)), spot, ball,
-                             lamp(LightKind::kDirectional, 1, vec3(0))}) {
+  for (const Light& light :
+       {lamp(LightKind::kPoint, 1, vec3(0.5f)), spot, ball, lamp(LightKind::kDirectional, 1, vec3(0))}) {
     FloatLanes shares;
     Lamp(light).shares_at(at, shares);
     float sum = 0;

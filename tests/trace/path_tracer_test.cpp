@@ -243,8 +243,8 @@ TEST(PathTracer, ReflectanceIsClampedAndMetalReflectsNothing) {
   Primitive& painted = add(scene, square(1, 1, true), diffuse(1));
   painted.colours.assign(4, vec4(0.5f, 1, 2, 1));
   const Traced t(std::move(scene));
-  EXPECT_EQ(t.traced->reflectance(0, vec2(0)), vec3(0.5f, 0.25f, 0.125f));
-  EXPECT_EQ(t.traced->reflectance(2, vec2(0.3f)), vec3(0.5f, kMaxReflectance, kMaxReflectance));
+  EXPECT_EQ(t.traced->diffuse(0, vec2(0)).back, vec3(0.5f, 0.25f, 0.125f));
+  EXPECT_EQ(t.traced->diffuse(2, vec2(0.3f)).back, vec3(0.5f, kMaxReflectance, kMaxReflectance));
 }
 
 // Twice the light, twice the irradiance, to the last bit but rounding; and nothing changes when the room is

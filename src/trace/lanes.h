@@ -8,8 +8,8 @@
 
 namespace goldthread {
 
-/// So many paths go together; more than that at once are no quicker.
-constexpr size_t kLanes = 64;
+/// So many paths go together: as many as make little of what is done once a bundle.
+constexpr size_t kLanes = 128;
 
 using FloatLanes = std::array<float, kLanes>;
 

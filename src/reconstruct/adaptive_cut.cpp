@@ -19,8 +19,8 @@ constexpr double kLeft = 0.5;
 // And how much of the squared error that there is a round leaves for later ones: what holds the most of it is
 // to be cut again before the rest is cut at all.
 constexpr double kLeftByRound = 0.25;
-// A leaf that holds no more than this of the allowed squared error is left alone, however many there are: what
-// tests find of it is mostly chance.
+// A leaf that holds no more than this of the allowed squared error is left alone, however many there are:
+// what tests find of it is mostly chance.
 constexpr double kNothing = 1e-5;
 // A child with more of its parent's area than this.
 constexpr float kNearlyWhole = 0.75f;
@@ -98,7 +98,9 @@ uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces
                         std::max(1.0, brightness * brightness);
   const double most = std::min(counts, static_cast<double>(kMostTests));
   const uint32_t looks = errors_[test.leaf].looks;
-  if (looks > 0) return static_cast<uint32_t>(most + static_cast<double>(unit_float(hash(test.leaf, looks))));
+  if (looks > 0)
+    return static_cast<uint32_t>(std::min(4 * counts, static_cast<double>(kMostTests)) +
+                                 static_cast<double>(unit_float(hash(test.leaf, looks))));
   // Of many faces one would say little.
   return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(most)));
 }

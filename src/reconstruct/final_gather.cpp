@@ -45,6 +45,15 @@ constexpr float kTurned = 0.7071f;
 // What a source's unevenness may amount to, as a share of the receiver's light.
 constexpr float kUneven = 0.02f;
 
+// What a point may see, by the luck of its rays, of one.
+constexpr float kMostSeen = 1.05f;
+
+// Light, and the form factors that it comes by.
+struct Seen {
+  vec3 light{0};     // lux
+  float factor = 0;  // what is seen
+};
+
 // Adds up what comes to one point.
 class PointGather {
  public:
@@ -73,14 +82,27 @@ class PointGather {
     add_source(link, link.source, b);
   }
 
+  // Form factors of what is flat are exact. Those of clusters that surround a point may add up to far more
+  // than there is: they alone are cut back, and a lamp in plain view keeps its light.
   Gathered result() const {
-    return {sum_, faced_ > 0 ? seen_ / faced_ : 1.0f, seen_, variance_, nearest_leaf_};
+    const float room = std::max(0.0f, kMostSeen - flat_.factor);
+    const float kept = rough_.factor > room ? room / rough_.factor : 1.0f;
+    const float seen = flat_.factor + rough_.factor;
+    return {flat_.light + kept * rough_.light, faced_ > 0 ? seen / faced_ : 1.0f,
+            flat_.factor + kept * rough_.factor, variance_, nearest_leaf_};
   }
 
  private:
   bool is_weak_here(const Link& link, float most, float little) const {
     if (link.visibility > 0) return most_at(pool_[link.source], x_) * most < 10 * little;
     return options_.trust_hidden || link.unoccluded * most < little;
+  }
+
+  void see(ElementId source, const vec3& light, float factor) {
+    const Element& s = pool_[source];
+    Seen& seen = !is_surface(s.kind) || s.flat ? flat_ : rough_;
+    seen.light += light;
+    if (has_solid_angle(s.kind)) seen.factor += factor;
   }
 
   static vec3 tint_of(const Link& link) { return link.tint.is_white() ? vec3(1) : link.tint.colour(); }
@@ -90,10 +112,8 @@ class PointGather {
     if (!r.flat && is_below_horizon(pool_[link.source])) return;
     const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
                                   : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
-    sum_ += std::max(0.0f, modelled) * b * tint_of(link);
-    if (!has_solid_angle(pool_[link.source].kind)) return;
-    faced_ += link.unoccluded;
-    seen_ += link.mean;
+    see(link.source, std::max(0.0f, modelled) * b * tint_of(link), link.mean);
+    if (has_solid_angle(pool_[link.source].kind)) faced_ += link.unoccluded;
   }
 
   // Whether all of a surface lies behind the plane on which light is gathered.
@@ -137,10 +157,8 @@ class PointGather {
     }
     if (sight_of(link) == Sight::kSampled) add_doubt(factor * luminance(b), visible, count);
     if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
-    sum_ += visible * factor * b * tint;
-    if (!has_solid_angle(s.kind)) return;
-    faced_ += factor;
-    seen_ += visible * factor;
+    see(source, visible * factor * b * tint, visible * factor);
+    if (has_solid_angle(s.kind)) faced_ += factor;
   }
 
   Sight sight_of(const Link& link) const { return options_.bent ? Sight::kSampled : link.sight; }
@@ -173,16 +191,16 @@ class PointGather {
       if (child != kNoElement) {
         for (uint32_t c = 0; c < 2; ++c) add_source(link, child + c, light_.shown[child + c]);
       } else {  // a silhouette: as the link has it
-        sum_ += factor * static_cast<float>(link.visibility) / 255.0f * light_.shown[source] * tint_of(link);
+        const float visible = static_cast<float>(link.visibility) / 255.0f;
+        see(source, factor * visible * light_.shown[source] * tint_of(link), 0);
       }
       return;
     }
     const float scale = std::min(factor, 1.0f) / all;
-    sum_ += scale * sum;
+    see(source, scale * sum, share.seen / all * factor);
     const float brings = luminance(sum) * scale;
     variance_ += std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
     faced_ += factor;
-    seen_ += share.seen / all * factor;
   }
 
   // Whether a source may have faces turned away from each other: of a window that is lit from within a point
@@ -224,13 +242,10 @@ class PointGather {
   const uint32_t seed_;
   RayCount& rays_;
   const float whole_;
-  vec3 sum_{0};
-  float faced_ = 0, seen_ = 0, variance_ = 0, nearest_brings_ = 0;
+  Seen flat_, rough_;
+  float faced_ = 0, variance_ = 0, nearest_brings_ = 0;
   ElementId nearest_leaf_ = kNoElement;
 };
-
-// What a point may see, by the luck of its rays, of one.
-constexpr float kMostSeen = 1.05f;
 
 }  // namespace
 

@@ -8,8 +8,8 @@
 
 namespace goldthread {
 
-/// So many paths go together: as many as make little of what is done once a bundle.
-constexpr size_t kLanes = 128;
+/// So many paths go together: as many as make little of what is done once a bundle, and of its last paths.
+constexpr size_t kLanes = 512;
 
 using FloatLanes = std::array<float, kLanes>;
 

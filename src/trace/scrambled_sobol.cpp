@@ -12,15 +12,17 @@ GOLDTHREAD_WIDE_CLONES void sobol_points(const PathSeed* paths, size_t count, ui
   for (size_t i = 0; i < count; ++i) points[i] = sobol_point(paths[i].index, hash(paths[i].seed, pair));
 }
 
+GOLDTHREAD_WIDE_CLONES void hashed_points(const PathSeed* paths, size_t count, uint32_t pair,
+                                          SobolPoint* points) {
+  for (size_t i = 0; i < count; ++i) points[i] = hashed_point(paths[i].index, hash(paths[i].seed, pair));
+}
+
 }  // namespace
 
 void path_points(std::span<const PathSeed> paths, uint32_t pair, std::span<SobolPoint> points) {
   GOLDTHREAD_CHECK_EQ(paths.size(), points.size());
-  if (pair <= kSobolPairs) {
-    sobol_points(paths.data(), paths.size(), pair, points.data());
-    return;
-  }
-  for (size_t i = 0; i < paths.size(); ++i) points[i] = path_point(paths[i], pair);
+  const auto draw = pair <= kSobolPairs ? sobol_points : hashed_points;
+  draw(paths.data(), paths.size(), pair, points.data());
 }
 
 }  // namespace goldthread

@@ -52,6 +52,12 @@ inline SobolPoint sobol_point(uint32_t index, uint32_t seed) {
           reverse_bits(scramble_upwards(pascal_product(shuffled), third))};
 }
 
+/// Point `index` of a sequence that chance alone spreads.
+inline SobolPoint hashed_point(uint32_t index, uint32_t seed) {
+  const uint32_t u = hash(index, seed);
+  return {u, hash(u)};
+}
+
 /// A fraction as a number in [0, 1).
 inline double unit_double(uint32_t fraction) {
   return static_cast<double>(fraction) * 0x1p-32;
@@ -69,9 +75,7 @@ constexpr uint32_t kSobolPairs = 12;
 /// Two of a path's dimensions, of which it has as many pairs as are asked for.
 inline SobolPoint path_point(PathSeed path, uint32_t pair) {
   const uint32_t pair_seed = hash(path.seed, pair);
-  if (pair <= kSobolPairs) return sobol_point(path.index, pair_seed);
-  const uint32_t u = hash(path.index, pair_seed);
-  return {u, hash(u)};
+  return pair <= kSobolPairs ? sobol_point(path.index, pair_seed) : hashed_point(path.index, pair_seed);
 }
 
 /// `path_point` of many paths at once; `points` is as long as `paths`.

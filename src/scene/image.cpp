@@ -94,6 +94,15 @@ vec4 TextureLookup::data() const {
   return mixed(kShares);
 }
 
+float TextureLookup::data(int channel) const {
+  if (top_ == nullptr) return 1;
+  const auto across = [&](const uint8_t* row) {
+    return glm::mix(kShares[row[left_ + uint32_t(channel)]], kShares[row[right_ + uint32_t(channel)]],
+                    weights_.x);
+  };
+  return glm::mix(across(top_), across(bottom_), weights_.y);
+}
+
 vec4 sample_texture(const Texture& texture, const std::vector<Image>& images, vec2 uv) {
   return TextureLookup(texture, image_of(texture, images), uv).colour();
 }

@@ -73,6 +73,8 @@ class TextureLookup {
   vec4 colour() const;
   /// All four as stored, in 0..1: of data textures (metallic, roughness).
   vec4 data() const;
+  /// One of them.
+  float data(int channel) const;
 
  private:
   /// With what a byte of the three colours stands for.

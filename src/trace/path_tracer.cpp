@@ -98,6 +98,8 @@ class Bundle {
   void cast();
   void collect(std::span<vec3> sums);
   void send_on(uint32_t& pair);
+  void meet();
+  void look_up();
   void bounce(bool sure, std::span<vec3> sums);
   bool arrive(size_t i, double side, Path& path, vec3& sum) const;
   void choose_side(const vec3& normal, const Diffuse& diffuse, double side, Path& path) const;
@@ -113,7 +115,9 @@ class Bundle {
   Few<Ray, kBundle> rays_;
   Few<Hit, kBundle> hits_;
   Few<Meeting, kBundle> meetings_;
-  Few<TextureLookup, kBundle> base_colours_;  ///< where meetings_ are live
+  Few<Diffuse, kBundle> diffuse_;             ///< where meetings_ are live
+  Few<uint32_t, kBundle> painted_;            ///< those of meetings_ that are live and not even
+  Few<TextureLookup, kBundle> base_colours_;  ///< of painted_
   Few<Ray, 3 * kBundle> shadows_;
   Few<Promise, 3 * kBundle> promises_;  ///< of shadows_
   Few<vec3, 3 * kBundle> passed_;       ///< of shadows_
@@ -260,24 +264,42 @@ GOLDTHREAD_WIDE_CLONES void density_ratios(const Places& from, const Flights& fl
   }
 }
 
-/// Adds what was met to the sums, and keeps those paths that go on. What is read of each is asked for while
-/// others are worked on.
-void Bundle::bounce(bool sure, std::span<vec3> sums) {
+/// Says where rays have ended. What is read of each, here and in `look_up`, is asked for while others are
+/// worked on.
+void Bundle::meet() {
   for (const Hit& hit : hits_.all()) scene_.prefetch(hit);
   meetings_.resize(paths_.size());
+  diffuse_.resize(paths_.size());
+  painted_.resize(paths_.size());
+  size_t painted = 0;
   for (size_t i = 0; i < paths_.size(); ++i) {
     const Meeting& met = meetings_[i];
     scene_.meet(rays_[i], hits_[i], meetings_[i]);
     if (!met.live) continue;
-    scene_.prefetch_texcoords(met.triangle);
+    scene_.prefetch_texcoords(met);
     flights_.distances[i] = met.distance;
     flights_.normals.set(i, met.normal);
+    diffuse_[i] = met.part->diffuse;
+    // No branch: whether the next surface is painted nobody can foresee.
+    painted_[painted] = static_cast<uint32_t>(i);
+    painted += met.part->even ? 0 : 1;
   }
+  painted_.resize(painted);
+}
+
+/// Reflectance of what is not even.
+void Bundle::look_up() {
+  base_colours_.resize(painted_.size());
+  for (size_t k = 0; k < painted_.size(); ++k) base_colours_[k] = scene_.begin_lookup(meetings_[painted_[k]]);
+  for (size_t k = 0; k < painted_.size(); ++k)
+    diffuse_[painted_[k]] = scene_.diffuse(meetings_[painted_[k]], base_colours_[k]);
+}
+
+/// Adds what was met to the sums, and keeps those paths that go on.
+void Bundle::bounce(bool sure, std::span<vec3> sums) {
+  meet();
+  look_up();
   density_ratios(places_, flights_, scene_.epsilon(), density_ratios_);
-  base_colours_.resize(paths_.size());
-  for (size_t i = 0; i < paths_.size(); ++i)
-    if (meetings_[i].live)
-      base_colours_[i] = scene_.begin_lookup(meetings_[i].triangle, meetings_[i].weights);
   size_t kept = 0;
   for (size_t i = 0; i < paths_.size(); ++i) {
     Path path = paths_[i];
@@ -344,7 +366,7 @@ bool Bundle::arrive(size_t i, double side, Path& path, vec3& sum) const {
   path.throughput *= density_ratios_[i];
   sum += path.throughput * emission_found(path, ray, met);
   path.point = ray.origin + met.distance * ray.direction;
-  choose_side(met.normal, scene_.diffuse(met.triangle, met.weights, base_colours_[i]), side, path);
+  choose_side(met.normal, diffuse_[i], side, path);
   path.origin = path.point + scene_.epsilon() * path.normal;
   return largest(path.throughput) > 0;
 }

@@ -230,12 +230,14 @@ Meeting TracedScene::closest(const Ray& ray) const {
 
 void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.triangle = hit.triangle;
+  met.part = nullptr;
   met.live = false;
   met.tint = hit.tint;
   if (hit.missed()) return;
   const TracedTriangle& triangle = triangles_[hit.triangle];
   const TracedPart& part = parts_[triangle.part];
   const bool from_front = dot(triangle.normal, ray.direction) < 0;
+  met.part = &part;
   met.distance = hit.distance;
   met.weights = hit.weights;
   met.normal = from_front ? triangle.normal : -triangle.normal;
@@ -257,6 +259,7 @@ void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
   const dvec3 n = cross(u, v), w = dvec3(p) - a;
   const double squared = dot(n, n);
   met.triangle = found;
+  met.part = &parts_[triangles_[found].part];
   met.weights = vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared);
   met.live = true;
 }
@@ -288,10 +291,11 @@ TextureLookup TracedScene::base_colour_lookup(const TracedPart& part, uint32_t t
   return {texture, part.base_colour_texels, texcoord(part, texture, triangle, weights)};
 }
 
-TextureLookup TracedScene::begin_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const {
-  const TextureLookup base_colour = base_colour_lookup(part, triangle, weights);
+TextureLookup TracedScene::begin_lookup(const Meeting& met) const {
+  const TextureLookup base_colour = base_colour_lookup(*met.part, met.triangle, met.weights);
   base_colour.prefetch();
-  for (const Texture* texture : part.other_textures) lookup(part, *texture, triangle, weights).prefetch();
+  for (const Texture* texture : met.part->other_textures)
+    lookup(*met.part, *texture, met.triangle, met.weights).prefetch();
   return base_colour;
 }
 
@@ -344,7 +348,7 @@ float TracedScene::factor(float value, const Texture& texture, int channel, uint
                           vec2 weights) const {
   if (!(value > 0) || !texture.present()) return value;
   const TracedPart& part = parts_[triangles_[triangle].part];
-  return value * lookup(part, texture, triangle, weights).data()[channel];
+  return value * lookup(part, texture, triangle, weights).data(channel);
 }
 
 /// Share of what alpha leaves that lets light straight on, but for its colour.

@@ -52,11 +52,12 @@ struct TracedTriangle {
 /// Where a ray ends.
 struct Meeting {
   uint32_t triangle = Hit::kMiss;
-  float distance = 0;  ///< in lengths of the ray's direction
-  vec2 weights{0};     ///< barycentric, of the source triangle's corners 1 and 2
-  vec3 normal{0};      ///< unit, of the side that the ray comes from
-  bool live = false;   ///< that side reflects and emits: the front, or either side of what is two-sided
-  vec3 tint{1};        ///< what the light that came this way was multiplied by: Hit::tint
+  const TracedPart* part = nullptr;  ///< the triangle's; null where it missed
+  float distance = 0;                ///< in lengths of the ray's direction
+  vec2 weights{0};                   ///< barycentric, of the source triangle's corners 1 and 2
+  vec3 normal{0};                    ///< unit, of the side that the ray comes from
+  bool live = false;  ///< that side reflects and emits: the front, or either side of what is two-sided
+  vec3 tint{1};       ///< what the light that came this way was multiplied by: Hit::tint
 
   bool missed() const { return triangle == Hit::kMiss; }
 };
@@ -84,16 +85,12 @@ class TracedScene {
   /// coverage; of glass it is the diffuse share of all light over coverage.
   Diffuse diffuse(uint32_t triangle, vec2 weights) const {
     const TracedPart& part = parts_[triangles_[triangle].part];
-    return diffuse(triangle, weights,
-                   part.even ? TextureLookup() : base_colour_lookup(part, triangle, weights));
-  }
-  /// The same where `begin_lookup` has said, of the same point, where its base colour is.
-  Diffuse diffuse(uint32_t triangle, vec2 weights, const TextureLookup& base_colour) const {
-    const TracedPart& part = parts_[triangles_[triangle].part];
     if (part.even) return part.diffuse;
-    if (part.textured)
-      return {glm::clamp(part.tint * vec3(base_colour.colour()), vec3(0), vec3(kMaxReflectance)), vec3(0)};
-    return diffuse_at(part, triangle, weights, base_colour);
+    return diffuse(part, triangle, weights, base_colour_lookup(part, triangle, weights));
+  }
+  /// The same of what is met, where `begin_lookup` has said where its base colour is.
+  Diffuse diffuse(const Meeting& met, const TextureLookup& base_colour) const {
+    return diffuse(*met.part, met.triangle, met.weights, base_colour);
   }
   /// Emitted luminance, nits, over coverage just so; 0 where the material is unlit.
   vec3 emission(uint32_t triangle, vec2 weights) const {
@@ -103,9 +100,8 @@ class TracedScene {
   }
   /// The same of what is met: nothing from the back of what is translucent and yet one-sided.
   vec3 emission(const Meeting& met) const {
-    const TracedPart& part = parts_[triangles_[met.triangle].part];
-    if (!part.shines) return vec3(0);
-    const bool dark = part.translucent && !part.material->double_sided &&
+    if (!met.part->shines) return vec3(0);
+    const bool dark = met.part->translucent && !met.part->material->double_sided &&
                       dot(met.normal, triangles_[met.triangle].normal) < 0;
     return dark ? vec3(0) : emission(met.triangle, met.weights);
   }
@@ -115,17 +111,13 @@ class TracedScene {
   void prefetch(const Hit& hit) const {
     if (!hit.missed()) __builtin_prefetch(&triangles_[hit.triangle]);
   }
-  /// The same for what `begin_lookup` reads of a triangle.
-  void prefetch_texcoords(uint32_t triangle) const {
-    const TracedPart& part = parts_[triangles_[triangle].part];
-    for (const std::vector<CornerTexcoords>& set : part.texcoords)
-      if (!set.empty()) __builtin_prefetch(&set[triangle - part.first_triangle]);
+  /// The same for what `begin_lookup` reads.
+  void prefetch_texcoords(const Meeting& met) const {
+    for (const std::vector<CornerTexcoords>& set : met.part->texcoords)
+      if (!set.empty()) __builtin_prefetch(&set[met.triangle - met.part->first_triangle]);
   }
-  /// The same for what `diffuse` and `emission` read of a point's textures; says where its base colour is.
-  TextureLookup begin_lookup(uint32_t triangle, vec2 weights) const {
-    const TracedPart& part = parts_[triangles_[triangle].part];
-    return part.even ? TextureLookup() : begin_lookup(part, triangle, weights);
-  }
+  /// The same for what `diffuse` and `emission` read of textures; says where the base colour is.
+  TextureLookup begin_lookup(const Meeting& met) const;
   /// Share of rays that a point stops, 0..1: 0 or 1 for a mask, the clamped alpha for a blend; of glass, what
   /// neither alpha nor transmission lets through.
   float coverage(uint32_t triangle, vec2 weights) const;
@@ -148,13 +140,17 @@ class TracedScene {
 
  private:
   void add(uint32_t instance, uint32_t primitive);
+  Diffuse diffuse(const TracedPart& part, uint32_t triangle, vec2 weights,
+                  const TextureLookup& base_colour) const {
+    if (!part.textured) return diffuse_at(part, triangle, weights, base_colour);
+    return {glm::clamp(part.tint * vec3(base_colour.colour()), vec3(0), vec3(kMaxReflectance)), vec3(0)};
+  }
   Diffuse diffuse_at(const TracedPart& part, uint32_t triangle, vec2 weights,
                      const TextureLookup& base_colour_texel) const;
   vec3 emission_at(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec2 texcoord(const TracedPart& part, const Texture& texture, uint32_t triangle, vec2 weights) const;
   TextureLookup lookup(const TracedPart& part, const Texture& texture, uint32_t triangle, vec2 weights) const;
   TextureLookup base_colour_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const;
-  TextureLookup begin_lookup(const TracedPart& part, uint32_t triangle, vec2 weights) const;
   vec4 base_colour(const TracedPart& part, uint32_t triangle, vec2 weights, const TextureLookup& texel) const;
   vec4 base_colour(uint32_t triangle, vec2 weights) const;
   float factor(float value, const Texture& texture, int channel, uint32_t triangle, vec2 weights) const;

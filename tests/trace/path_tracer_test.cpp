@@ -1,6 +1,8 @@
 // Scenes whose light is known in closed form.
 #include "trace/path_tracer.h"
 
+#include <set>
+
 #include "math/form_factor.h"
 #include "trace/traced.h"
 
@@ -208,6 +210,30 @@ TEST(PathTracer, TexturedReflectance) {
   scene.materials.back().base_colour_texture.wrap_u = Wrap::kClamp;
   scene.lights.push_back(lamp(LightKind::kDirectional, 1000, vec3(0), vec3(0, 0, 1)));
   expect_estimates(Traced(scene).at(vec3(0), kUp), 0.4 * 1000 * (square_factor(50, 1) - square_factor(2, 1)));
+}
+
+// Between a painted floor and an even ceiling that shines, what paths meet differs from each to the next.
+TEST(PathTracer, PathsDoNotDependOnThoseBeside) {
+  Scene scene;
+  Primitive& floor = add(scene, square(2, 0, true), diffuse(0.8f));
+  add_halves(scene, floor, 0);
+  scene.materials.back().base_colour_texture.image = 0;
+  add(scene, square(1, 1, false), diffuse(0.6f, 10));
+  const Traced t(std::move(scene));
+  std::vector<PathStart> starts;
+  for (uint32_t i = 0; i < PathTracer::kBundle + 7; ++i)
+    starts.push_back({vec3(0.1f, 0.2f, 0.001f), kUp, {i, 1}});
+  std::vector<vec3> together(starts.size());
+  PathCost count;
+  t.tracer->irradiance(starts, together, count);
+  std::set<float> different;
+  for (size_t i = 0; i < starts.size(); ++i) {
+    vec3 alone(0);
+    t.tracer->irradiance({&starts[i], 1}, {&alone, 1}, count);
+    EXPECT_EQ(together[i], alone) << i;
+    different.insert(alone.x);
+  }
+  EXPECT_GT(different.size(), starts.size() / 2);
 }
 
 TEST(PathTracer, AlphaLetsItsShareThrough) {

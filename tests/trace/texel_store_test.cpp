@@ -39,6 +39,7 @@ TEST(TexelStore, LookupsAreThoseOfTheImages) {
         const TextureLookup lookup(texture, store[texture], uv);
         EXPECT_EQ(lookup.colour(), sample_texture(texture, images, uv)) << image;
         EXPECT_EQ(lookup.data(), sample_data_texture(texture, images, uv)) << image;
+        for (int c = 0; c < 4; ++c) EXPECT_EQ(lookup.data(c), lookup.data()[c]) << image;
       }
   EXPECT_EQ(store[use_of(3, Wrap::kRepeat)].rgba, images[3].rgba.data());
   EXPECT_NE(store[use_of(2, Wrap::kRepeat)].rgba, images[2].rgba.data());
@@ -68,7 +69,11 @@ void expect_diffuse(const Scene& scene, const Expected& expected) {
     const vec3 point = traced.point(0, weights);
     const vec3 colour(sample_texture(texture, scene.images, vec2(point.x, point.y)));
     const Diffuse at_once = traced.diffuse(0, weights);
-    const Diffuse begun = traced.diffuse(0, weights, traced.begin_lookup(0, weights));
+    Meeting met;
+    met.triangle = 0;
+    met.part = &traced.parts()[0];
+    met.weights = weights;
+    const Diffuse begun = traced.diffuse(met, traced.begin_lookup(met));
     EXPECT_LT(length(at_once.back - expected(colour)), 1e-5f) << i;
     EXPECT_EQ(begun.back, at_once.back);
     EXPECT_EQ(begun.through, at_once.through);

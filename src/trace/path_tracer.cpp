@@ -364,7 +364,7 @@ bool Bundle::arrive(size_t i, double side, Path& path, vec3& sum) const {
   if (!met.live) return false;
   if (!(density_ratios_[i] > 0)) return false;
   path.throughput *= density_ratios_[i];
-  sum += path.throughput * emission_found(path, ray, met);
+  if (met.part->shines) sum += path.throughput * emission_found(path, ray, met);
   path.point = ray.origin + met.distance * ray.direction;
   choose_side(met.normal, diffuse_[i], side, path);
   path.origin = path.point + scene_.epsilon() * path.normal;

@@ -14,6 +14,8 @@ namespace {
 // the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
+// How many times as many places later looks go to, for leaves that seem right.
+constexpr double kMoreLater = 4;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
 constexpr double kLeft = 0.5;
 // And how much of the squared error that there is a round leaves for later ones: what holds the most of it is
@@ -99,7 +101,7 @@ uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces
   const double most = std::min(counts, static_cast<double>(kMostTests));
   const uint32_t looks = errors_[test.leaf].looks;
   if (looks > 0)
-    return static_cast<uint32_t>(std::min(4 * counts, static_cast<double>(kMostTests)) +
+    return static_cast<uint32_t>(std::min(kMoreLater * counts, static_cast<double>(kMostTests)) +
                                  static_cast<double>(unit_float(hash(test.leaf, looks))));
   // Of many faces one would say little.
   return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(most)));
@@ -174,9 +176,10 @@ std::vector<ElementId> AdaptiveGather::nearly_whole(std::span<const ElementId> p
   std::vector<ElementId> children;
   for (const ElementId id : parents) {
     const ElementId first = pool[id].first_child;
-    if (first == kNoElement || pool[id].kind != ElementKind::kCluster) continue;
+    if (first == kNoElement) continue;
     for (const ElementId child : {first, first + 1})
-      if (!pool[child].indivisible && pool[child].area > kNearlyWhole * pool[id].area)
+      if (pool[child].kind == ElementKind::kCluster && !pool[child].indivisible &&
+          pool[child].area > kNearlyWhole * pool[id].area)
         children.push_back(child);
   }
   return children;

@@ -1,6 +1,7 @@
 #include "reconstruct/final_gather.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/rng.h"
 #include "math/colour.h"
@@ -21,11 +22,13 @@ uint32_t rays_for(float share, const Link& link, ElementKind source, const Gathe
 
 // What a source could bring at most to a point, by its size and distance alone: a link may be weak on the
 // whole and yet all that a point next to the source gets.
-float most_at(const Element& source, const vec3& x) {
-  const float apart = length(source.centre - x) - source.radius;
+float most_at(const ElementPool& pool, ElementId id, const vec3& x) {
+  const Element& source = pool[id];
+  const bool lamp = source.kind == ElementKind::kPoint;
+  const float reach = !lamp ? source.radius : pool.light(id).has_area() ? pool.light(id).reach() : 0.0f;
+  const float apart = length(source.centre - x) - reach;
   // Of a lamp its intensity counts.
-  if (source.kind == ElementKind::kPoint)
-    return apart > 0 ? 1 / (apart * apart) : std::numeric_limits<float>::infinity();
+  if (lamp) return apart > 0 ? 1 / (apart * apart) : std::numeric_limits<float>::infinity();
   if (!is_surface(source.kind)) return 0;
   return apart > 0 ? std::min(1.0f, source.area / (kPi * apart * apart)) : 1.0f;
 }
@@ -50,8 +53,9 @@ constexpr float kMostSeen = 1.05f;
 
 // Light, and the form factors that it comes by.
 struct Seen {
-  vec3 light{0};     // lux
-  float factor = 0;  // what is seen
+  vec3 light{0};       // lux
+  float factor = 0;    // what is seen
+  float variance = 0;  // of the light's luminance
 };
 
 // Adds up what comes to one point.
@@ -82,25 +86,32 @@ class PointGather {
     add_source(link, link.source, b);
   }
 
-  // Form factors of what is flat are exact. Those of clusters that surround a point may add up to far more
-  // than there is: they alone are cut back, and a lamp in plain view keeps its light.
+  // Form factors of what is flat are nearly exact. Those of clusters that surround a point may add up to far
+  // more than there is: they are cut back, and a lamp in plain view keeps its light.
   Gathered result() const {
-    const float room = std::max(0.0f, kMostSeen - flat_.factor);
-    const float kept = rough_.factor > room ? room / rough_.factor : 1.0f;
-    const float seen = flat_.factor + rough_.factor;
-    return {flat_.light + kept * rough_.light, faced_ > 0 ? seen / faced_ : 1.0f,
-            flat_.factor + kept * rough_.factor, variance_, nearest_leaf_};
+    const float seen = sure_.factor + guessed_.factor;
+    float kept = 1;
+    if (seen > kMostSeen && guessed_.factor > 0)
+      kept = std::max((kMostSeen - sure_.factor) / guessed_.factor, 0.0f);
+    return {sure_.light + kept * guessed_.light, faced_ > 0 ? seen / faced_ : 1.0f,
+            sure_.factor + kept * guessed_.factor, sure_.variance + kept * kept * guessed_.variance,
+            nearest_leaf_};
   }
 
  private:
   bool is_weak_here(const Link& link, float most, float little) const {
-    if (link.visibility > 0) return most_at(pool_[link.source], x_) * most < 10 * little;
+    if (link.visibility > 0) return most_at(pool_, link.source, x_) * most < 10 * little;
     return options_.trust_hidden || link.unoccluded * most < little;
+  }
+
+  // What glows is never cut back for others' sake.
+  Seen& group_of(const Element& source) {
+    return !is_surface(source.kind) || source.flat || largest(source.exitance) > 0 ? sure_ : guessed_;
   }
 
   void see(ElementId source, const vec3& light, float factor) {
     const Element& s = pool_[source];
-    Seen& seen = !is_surface(s.kind) || s.flat ? flat_ : rough_;
+    Seen& seen = group_of(s);
     seen.light += light;
     if (has_solid_angle(s.kind)) seen.factor += factor;
   }
@@ -155,7 +166,7 @@ class PointGather {
     } else if (count > 0) {
       visible = solver_.visibility().fraction(pool_, source, x_, n_, count, seed_, rays_, visible, &tint);
     }
-    if (sight_of(link) == Sight::kSampled) add_doubt(factor * luminance(b), visible, count);
+    if (sight_of(link) == Sight::kSampled) add_doubt(s, factor * luminance(b), visible, count);
     if (is_surface(s.kind)) visible = std::min(visible, 1 / factor);
     see(source, visible * factor * b * tint, visible * factor);
     if (has_solid_angle(s.kind)) faced_ += factor;
@@ -199,7 +210,8 @@ class PointGather {
     const float scale = std::min(factor, 1.0f) / all;
     see(source, scale * sum, share.seen / all * factor);
     const float brings = luminance(sum) * scale;
-    variance_ += std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
+    group_of(pool_[source]).variance +=
+        std::max(0.0f, squares * scale * scale - brings * brings / static_cast<float>(count));
     faced_ += factor;
   }
 
@@ -227,11 +239,11 @@ class PointGather {
 
   // Of `count` rays, that next to the seen share might have been seen, or not (Laplace); without rays, what
   // is seen in part is known to about four.
-  void add_doubt(float brings, float visible, uint32_t count) {
+  void add_doubt(const Element& source, float brings, float visible, uint32_t count) {
     if (count <= 1 && (visible <= 0 || visible >= 1)) return;  // lamps without size, and weak sources
     const float n = static_cast<float>(std::max(count, 4u));
     const float likely = (visible * n + 0.5f) / (n + 1);
-    variance_ += brings * brings * likely * (1 - likely) / n;
+    group_of(source).variance += brings * brings * likely * (1 - likely) / n;
   }
 
   const HierarchicalSolver& solver_;
@@ -242,8 +254,8 @@ class PointGather {
   const uint32_t seed_;
   RayCount& rays_;
   const float whole_;
-  Seen flat_, rough_;
-  float faced_ = 0, variance_ = 0, nearest_brings_ = 0;
+  Seen sure_, guessed_;
+  float faced_ = 0, nearest_brings_ = 0;
   ElementId nearest_leaf_ = kNoElement;
 };
 

@@ -32,7 +32,7 @@ struct ShownLight {
 struct Gathered {
   vec3 irradiance{0};  ///< lux
   float openness = 1;  ///< of what lies before the point, the share that it sees
-  float seen = 1;      ///< sum of the visible form factors
+  float seen = 1;      ///< sum of the visible form factors, once those of clusters are cut back
   float variance = 0;  ///< of the luminance of `irradiance`, lux^2, as far as the rays' luck goes
   /// The brightest leaf that lies next to the point, of which only the mean is known; kNoElement if none
   /// does.
@@ -45,7 +45,8 @@ struct Gathered {
 /// of the light worth them; for the rest the links' own sampled visibility serves. A source next to x whose
 /// radiosity varies is descended: what x has before it may be in the shadow of x's own surface. And
 /// of what outshines all that the leaf has, or may have faces turned away from each other, the leaves that
-/// rays meet tell, not its mean.
+/// rays meet tell, not its mean. Where all that x sees is more than there is, what comes from dark clusters,
+/// whose form factors are guesses, is cut back to what flat and glowing sources leave of it.
 Gathered gather_at(const HierarchicalSolver& solver, const ShownLight& light, ElementId leaf, const vec3& x,
                    const vec3& n, const GatherOptions& options, uint32_t seed, RayCount& rays);
 

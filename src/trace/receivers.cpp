@@ -210,7 +210,7 @@ void turn_to_shading_normal(const TracedScene& scene, Receiver& receiver) {
 
 bool is_buried(const TracedScene& scene, const Receiver& receiver) {
   constexpr uint32_t kLooks = 64, kFew = 3;
-  const mat3 frame = frame_about(receiver.normal);
+  const mat3 frame = frame_about(receiver.surface == vec3(0) ? receiver.normal : receiver.surface);
   uint32_t others = 0;
   for (uint32_t i = 0; i < kLooks && others <= kFew; ++i) {
     const UnitSquarePoint p = r2_point(i, 17);

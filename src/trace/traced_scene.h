@@ -36,7 +36,7 @@ struct TracedPart {
   bool even = false;      ///< no texture and no vertex colour: the next two hold all over
   Diffuse diffuse;        ///< as TracedScene::diffuse
   vec3 emission{0};       ///< as TracedScene::emission
-  bool textured = false;  ///< nothing but the texture of its base colour makes it uneven:
+  bool textured = false;  ///< nothing but the texture of its base colour makes its reflectance uneven:
   vec3 tint{0};           ///< reflectance is this times its colour
   Texture base_colour_texture;
   TexelView base_colour_texels;

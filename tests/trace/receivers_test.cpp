@@ -114,6 +114,30 @@ TEST(Receivers, KeepTheFacesNormalWhereTheFileIsMistaken) {
   }
 }
 
+vec3 turned(const vec3& v) {
+  return {-v.y, v.x, v.z};
+}
+
+// The floor beneath a box, with normals as of a pillow: what looks below the floor meets the floor itself.
+TEST(Receivers, AreBuriedUnderABoxHoweverTheyAreTurned) {
+  Scene scene;
+  Primitive& floor = add(scene, square(1, 0, true), diffuse(0.5f));
+  floor.normals.assign(4, normalize(vec3(1, 0, 1)));
+  for (const vec3& side : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0)})
+    add(scene, parallelogram(0.5f * (side - turned(side)), turned(side), {0, 0, 1}), diffuse(0.5f));
+  add(scene, square(0.5f, 1, true), diffuse(0.5f));
+  const Traced t(std::move(scene));
+  int beneath = 0;
+  for (Receiver r : random_receivers(*t.traced, 400, 5)) {
+    if (r.point.z != 0 || r.normal.z < 0.5f || std::max(std::abs(r.point.x), std::abs(r.point.y)) > 0.45f) continue;
+    turn_to_shading_normal(*t.traced, r);
+    EXPECT_NE(r.surface, vec3(0));
+    EXPECT_TRUE(is_buried(*t.traced, r));
+    ++beneath;
+  }
+  EXPECT_GT(beneath, 5);
+}
+
 TEST(Receivers, PlacedOnTheNearestSurface) {
   const Traced t(three_squares());
   const PlacedReceiver on = place_receiver(*t.traced, vec3(0.3f, 0.2f, 0), vec3(0, 0, 1));

@@ -129,7 +129,8 @@ TEST(Receivers, AreBuriedUnderABoxHoweverTheyAreTurned) {
   const Traced t(std::move(scene));
   int beneath = 0;
   for (Receiver r : random_receivers(*t.traced, 400, 5)) {
-    if (r.point.z != 0 || r.normal.z < 0.5f || std::max(std::abs(r.point.x), std::abs(r.point.y)) > 0.45f) continue;
+    if (r.point.z != 0 || r.normal.z < 0.5f || std::max(std::abs(r.point.x), std::abs(r.point.y)) > 0.45f)
+      continue;
     turn_to_shading_normal(*t.traced, r);
     EXPECT_NE(r.surface, vec3(0));
     EXPECT_TRUE(is_buried(*t.traced, r));

@@ -35,8 +35,8 @@ struct FeetWorld {
   std::vector<std::vector<uint32_t>> twins;  ///< by tree: find_twins of its mesh
 };
 
-/// Where something stands on a triangle or patch, hovers close above it, ends there or passes through it,
-/// along at least a quarter of a cut: its foot.
+/// Where something stands on a triangle or patch, hovers close above it or passes through it, or where a lamp
+/// close above it ends, along at least a quarter of a cut: its foot.
 class Feet {
  public:
   /// Looks for the feet of elements that are new since the last call. In parallel. Finds none where

@@ -89,22 +89,22 @@ LeafFaces AdaptiveGather::faces_of(const Test& test) const {
   return faces;
 }
 
-// At how many places a leaf is looked at. What may be missed there is as large as its light, so that bright
-// ones count by its square. The first look is at all leaves; later ones take their chance.
-uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces, double areas) const {
+// At how many places a leaf of so many unit areas is looked at. What may be missed there is as large as its
+// light, so that bright ones count by its square. The first look is at all leaves; later ones take their
+// chance.
+uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces, double unit_areas) const {
   const std::vector<vec3>& light = parts_[test.part].sides[test.side].light;
   float brightest = 0;
   for (const uint32_t point : faces.corners()) brightest = std::max(brightest, luminance(light[point]));
   const double brightness = static_cast<double>(brightest) / mean_light_;
-  const double counts = areas * static_cast<double>(solver_.regard().of(solver_.pool()[test.leaf])) *
+  const double counts = unit_areas * static_cast<double>(solver_.regard().of(solver_.pool()[test.leaf])) *
                         std::max(1.0, brightness * brightness);
-  const double most = std::min(counts, static_cast<double>(kMostTests));
   const uint32_t looks = errors_[test.leaf].looks;
+  const double wanted = std::min((looks > 0 ? kMoreLater : 1) * counts, static_cast<double>(kMostTests));
   if (looks > 0)
-    return static_cast<uint32_t>(std::min(kMoreLater * counts, static_cast<double>(kMostTests)) +
-                                 static_cast<double>(unit_float(hash(test.leaf, looks))));
+    return static_cast<uint32_t>(wanted + static_cast<double>(unit_float(hash(test.leaf, looks))));
   // Of many faces one would say little.
-  return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(most)));
+  return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(wanted)));
 }
 
 // Compares what the corners say of places within a leaf with what is there.
@@ -158,7 +158,7 @@ void AdaptiveGather::test_leaves(bool again) {
   places_tested_ += places.load();
 }
 
-void AdaptiveGather::cut_now(std::vector<ElementId>& leaves) {
+void AdaptiveGather::cut_now(std::vector<ElementId> leaves) {
   const ElementPool& pool = solver_.pool();
   std::sort(leaves.begin(), leaves.end());
   cut_.resize(pool.size(), 0);

@@ -92,7 +92,7 @@ class AdaptiveGather {
   std::vector<Test> list_tests(bool again);
   LeafFaces faces_of(const Test& test) const;
   TestPlace test_place(const Test& test, const FacePlace& at) const;
-  uint32_t places_to_test(const Test& test, const LeafFaces& faces, double areas) const;
+  uint32_t places_to_test(const Test& test, const LeafFaces& faces, double unit_areas) const;
   LeafError test(const Test& test, double unit_area, RayCount& count) const;
   void test_leaves(bool again);
   uint64_t gathers() const { return stats_.points + places_tested_; }
@@ -101,7 +101,7 @@ class AdaptiveGather {
     return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
   }
   bool cut();
-  void cut_now(std::vector<ElementId>& leaves);
+  void cut_now(std::vector<ElementId> leaves);
   std::vector<ElementId> nearly_whole(std::span<const ElementId> parents) const;
   std::vector<std::pair<uint32_t, uint32_t>> spread_places(const std::vector<Test>& tests,
                                                            uint32_t places) const;

@@ -12,6 +12,8 @@ namespace goldthread {
 class TexelStore {
  public:
   explicit TexelStore(const std::vector<Image>& images);
+  TexelStore(const TexelStore&) = delete;  // its views lead into its copies
+  TexelStore& operator=(const TexelStore&) = delete;
 
   /// Of no image where the texture has none.
   TexelView operator[](const Texture& texture) const {

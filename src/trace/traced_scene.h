@@ -107,7 +107,7 @@ class TracedScene {
   }
   /// Whether anything is translucent.
   bool has_translucent() const { return has_translucent_; }
-  /// Asks memory for what `meeting` reads of a triangle, and does not wait for it.
+  /// Asks memory for what `meet` reads of a triangle, and does not wait for it.
   void prefetch(const Hit& hit) const {
     if (!hit.missed()) __builtin_prefetch(&triangles_[hit.triangle]);
   }

@@ -105,11 +105,10 @@ void Lamp::shares_at(const Places& at, FloatLanes& shares) const {
 LightSample Lamp::light_of_share(const vec3& origin, float share) const {
   LightSample light;
   light.irradiance = light_.intensity * share;
-  light.shadow.origin = origin;
-  light.shadow.direction = -light_.direction;
+  light.way = -light_.direction;
   if (light_.kind == LightKind::kDirectional) return light;
-  light.shadow.direction = light_.position - origin;
-  light.shadow.far = 0.9999f;  // a lamp may be fixed to a surface
+  light.way = light_.position - origin;
+  light.far = 0.9999f;  // a lamp may be fixed to a surface
   return light;
 }
 
@@ -121,7 +120,6 @@ LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p)
   const View view = view_from(origin);
   if (!(view.sine > 0)) return light_of_share(origin, view.strength * std::max(0.0f, dot(view.axis, normal)));
   LightSample light;
-  light.shadow.origin = origin;
   const float aside = view.sine * std::sqrt(static_cast<float>(unit_double(p.u)));
   const float turn = 2 * kPi * static_cast<float>(unit_double(p.v));
   const vec3 across = normalize(std::abs(view.axis.x) > 0.6f ? vec3(view.axis.y, -view.axis.x, 0)
@@ -130,12 +128,12 @@ LightSample Lamp::light_at(const vec3& origin, const vec3& normal, SobolPoint p)
   const vec3 way =
       along * view.axis + aside * (std::cos(turn) * across + std::sin(turn) * cross(view.axis, across));
   light.irradiance = light_.intensity * (view.strength * std::max(0.0f, dot(way, normal)) / along);
-  light.shadow.direction = way;
+  light.way = way;
   if (light_.kind == LightKind::kDirectional) return light;
   // Ends where it meets the ball.
   const float half_chord = std::sqrt(std::max(0.0f, view.sine * view.sine - aside * aside));
-  light.shadow.direction = way * (view.distance * (along - half_chord));
-  light.shadow.far = 0.9999f;
+  light.way = way * (view.distance * (along - half_chord));
+  light.far = 0.9999f;
   return light;
 }
 
@@ -170,8 +168,7 @@ LightSample Lamp::area_light_at(const vec3& origin, const vec3& normal, SobolPoi
   // Squared distance over squared radius, and steradians above which directions are precise.
   constexpr float kNear = 16, kLeastSolidAngle = 0.02f;
   LightSample light;
-  light.shadow.origin = origin;
-  light.shadow.far = 0.9999f;  // it may be fixed to a surface
+  light.far = 0.9999f;  // it may be fixed to a surface
   const vec3 middle = light_.position - origin;
   const float before = -dot(middle, light_.direction);
   if (!(before > 0)) return light;
@@ -188,8 +185,8 @@ LightSample Lamp::area_light_at(const vec3& origin, const vec3& normal, SobolPoi
                                                 static_cast<float>(unit_double(p.v)));
       const float at_lamp = -dot(way, light_.direction);
       if (!(at_lamp > 0)) return light;
-      light.shadow.direction = way * (before / at_lamp);
-      if (light_.kind == LightKind::kDisc && length(light.shadow.direction - middle) > reach) return light;
+      light.way = way * (before / at_lamp);
+      if (light_.kind == LightKind::kDisc && length(light.way - middle) > reach) return light;
       light.irradiance = light_.intensity * (all * std::max(0.0f, dot(way, normal)) / light_.area());
       return light;
     }
@@ -197,7 +194,7 @@ LightSample Lamp::area_light_at(const vec3& origin, const vec3& normal, SobolPoi
   const vec2 place = place_on(p);
   const vec3 d = middle + place.x * frame_[0] + place.y * frame_[1];
   const float squared = dot(d, d);
-  light.shadow.direction = d;
+  light.way = d;
   light.irradiance = light_.intensity * (std::max(0.0f, dot(d, normal)) * before / (squared * squared));
   return light;
 }

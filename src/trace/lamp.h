@@ -1,18 +1,20 @@
 // Light from lamps, which no ray meets.
 #pragma once
+#include <limits>
+
 #include "scene/light.h"
 #include "trace/lanes.h"
 #include "trace/scrambled_sobol.h"
-#include "visibility/ray_caster.h"
 
 namespace goldthread {
 
 /// One way by which light may come.
 struct LightSample {
   vec3 irradiance{0};  ///< lux: what it brings unless something is in between, over the sample's density
-  Ray shadow;          ///< from the point to the light
-  float cosine = 0;    ///< between that way and the receiver's normal; of what has a density
-  float density = 0;   ///< of its direction, 1/sr; 0 for lamps, which no other strategy can find
+  vec3 way{0};         ///< to the light
+  float far = std::numeric_limits<float>::infinity();  ///< in lengths of `way`, what may be in between
+  float cosine = 0;   ///< between that way and the receiver's normal; of what has a density
+  float density = 0;  ///< of its direction, 1/sr; 0 for lamps, which no other strategy can find
 };
 
 /// A lamp, with what its cone needs of sines and cosines worked out. From a place point, spot and directional

@@ -90,15 +90,15 @@ void LightSampler::sample_sky(const Places& at, std::span<const SobolPoint> poin
 LightSample LightSampler::sky_sample(const vec3& normal, SobolPoint p) const {
   LightSample light;
   if (!sky_table_) {
-    light.shadow.direction = cosine_direction(normal, p);
-    light.cosine = std::max(0.0f, dot(normal, light.shadow.direction));
-    light.density = sky_density(light.shadow.direction, light.cosine);
+    light.way = cosine_direction(normal, p);
+    light.cosine = std::max(0.0f, dot(normal, light.way));
+    light.density = sky_density(light.way, light.cosine);
     light.irradiance = kPi * scene_.scene().sky.radiance;
     return light;
   }
   if (sky_table_->empty()) return light;
   const SkyDirection drawn = sky_table_->sample(unit_double(p.u), unit_double(p.v));
-  light.shadow.direction = drawn.direction;
+  light.way = drawn.direction;
   light.cosine = dot(normal, drawn.direction);
   light.density = drawn.density;
   if (!(light.cosine > 0) || !(light.density > 0)) return light;

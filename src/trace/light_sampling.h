@@ -32,8 +32,8 @@ struct LightSamples {
 
   void set(size_t i, const LightSample& light) {
     irradiance[i] = light.irradiance;
-    ways.set(i, light.shadow.direction);
-    far[i] = light.shadow.far;
+    ways.set(i, light.way);
+    far[i] = light.far;
     cosine[i] = light.cosine;
     density[i] = light.density;
   }

@@ -262,6 +262,12 @@ float light_distribution(const Light& light, const vec3& d) {
   return t * t;
 }
 
+float lamp_solid_angle(const Light& light) {
+  if (light.profile) return static_cast<float>(light.profile->luminous_flux());
+  if (light.has_area()) return kPi;  // by the cosine
+  return light.kind == LightKind::kPoint ? 4 * kPi : 2 * kPi * (1 - std::cos(light.outer_cone));
+}
+
 float light_range_factor(const Light& light, float distance) {
   if (light.range <= 0) return 1;
   const float r = distance / light.range;

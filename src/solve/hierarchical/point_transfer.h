@@ -61,6 +61,9 @@ float disc_cosine(const LightDisc& disc, const vec3& n);
 /// Share of a point or spot light's intensity that goes in unit direction `d`: its profile's, or
 /// KHR_lights_punctual's cone falloff.
 float light_distribution(const Light& light, const vec3& d);
+/// Steradians into which a lamp would have to shine as it does where it is brightest to give off as much
+/// light: lumens per candela. Of spot lights that of the whole cone, which is a little too much.
+float lamp_solid_angle(const Light& light);
 /// Share that is left at `distance` metres of a light with a range (KHR_lights_punctual), besides the inverse
 /// square.
 float light_range_factor(const Light& light, float distance);

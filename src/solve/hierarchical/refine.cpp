@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numbers>
 
 #include "base/parallel.h"
+#include "solve/hierarchical/point_transfer.h"
 #include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
@@ -60,6 +62,34 @@ double likely_factor(const ElementPool& pool, const Link& link) {
   // The share of the rays that arrive, were one more to arrive of two more (Laplace).
   const double seen = (link.visibility / 255.0 * link.rays + 1) / (link.rays + 2.0);
   return std::max(static_cast<double>(link.unoccluded), most * seen);
+}
+
+// What a lamp could bring at most on the average, per candela, to a receiver too large for its light to be
+// told by a few samples: all that is within reach of it, and of its cone. 0 for smaller ones.
+double most_of_lamp(const ElementPool& pool, const Link& link) {
+  const Element& r = pool[link.receiver];
+  if (pool[link.source].kind != ElementKind::kPoint) return 0;
+  const Light& light = pool.light(link.source);
+  const vec3 way = r.centre - light.position;
+  const double distance = static_cast<double>(length(way)), radius = static_cast<double>(r.radius);
+  if (r.flat && dot(way, normalize_or(r.summed_normal, vec3(0))) > light.reach() + light.radius) return 0;
+  const bool within = distance <= radius;
+  // Of the receiver's ball; a plane fills no more than half of what is around.
+  const double ball =
+      within ? (r.flat ? 2 : 4) * std::numbers::pi
+             : 2 * std::numbers::pi * (1 - std::sqrt(1 - radius * radius / (distance * distance)));
+  bool is_coarse = distance < 2 * radius;
+  if (light.kind == LightKind::kSpot && !light.profile) {
+    const auto outer = static_cast<double>(light.outer_cone);
+    if (!within) {
+      const double cosine = static_cast<double>(dot(way, light.direction)) / distance;
+      if (std::acos(std::clamp(cosine, -1.0, 1.0)) > outer + std::asin(radius / distance)) return 0;
+    }
+    is_coarse = is_coarse || distance * std::sin(outer) < radius;
+  }
+  return is_coarse
+             ? std::min(ball, static_cast<double>(lamp_solid_angle(light))) / static_cast<double>(r.area)
+             : 0;
 }
 
 bool divisible(const Element& e) {
@@ -247,7 +277,7 @@ LinkError estimate_error(const ElementPool& pool, const RadiosityState& state, c
   if (!r.flat) error.receiver += kTurnError * b * area * turned_share(r) * likely_factor(pool, link);
   const double v = link.visibility / 255.0;
   // With n rays all alike, the chance that the next differs is about 1/(n + 2) (Laplace).
-  const double missed = unoccluded * (0.5 / (link.rays + 2.0));
+  const double missed = std::max(unoccluded, most_of_lamp(pool, link)) * (0.5 / (link.rays + 2.0));
   error.receiver += b * area * (static_cast<double>(link.spread) + missed);
   const double range = static_cast<double>(state.high[link.source] - state.low[link.source]);
   error.source = 0.25 * range * static_cast<double>(link.mean) * area;

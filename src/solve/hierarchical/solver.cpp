@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/rng.h"
+#include "solve/hierarchical/point_transfer.h"
 #include "solve/hierarchical/push_pull.h"
 
 namespace goldthread {
@@ -179,13 +180,7 @@ vec3 emitted_power(const ElementPool& pool) {
       const vec3 d = glm::abs(pool.light(id).direction);
       power += e.exitance * (d.x * size.y * size.z + d.y * size.z * size.x + d.z * size.x * size.y);
     } else {
-      const Light& light = pool.light(id);
-      const float solid_angle = light.profile      ? static_cast<float>(light.profile->luminous_flux())
-                                : light.has_area() ? kPi  // by the cosine
-                                : light.kind == LightKind::kPoint
-                                    ? 4 * kPi
-                                    : 2 * kPi * (1 - std::cos(light.outer_cone));
-      power += e.exitance * solid_angle;
+      power += e.exitance * lamp_solid_angle(pool.light(id));
     }
   }
   return power;

@@ -14,6 +14,8 @@ namespace {
 // the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
+// The share of all error that is left of which a leaf must be likely to hold as much to be tested at all of them.
+constexpr double kWorthAll = 1e-3;
 // How many times as many places later looks go to, for leaves that seem right.
 constexpr double kMoreLater = 4;
 // What is left of the allowed error when leaves are cut for having more: so that few rounds will do.
@@ -100,9 +102,13 @@ uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces
   const double counts = unit_areas * static_cast<double>(solver_.regard().of(solver_.pool()[test.leaf])) *
                         std::max(1.0, brightness * brightness);
   const uint32_t looks = errors_[test.leaf].looks;
-  const double wanted = std::min((looks > 0 ? kMoreLater : 1) * counts, static_cast<double>(kMostTests));
+  double wanted = std::min((looks > 0 ? kMoreLater : 1) * counts, static_cast<double>(kMostTests));
   if (looks > 0)
     return static_cast<uint32_t>(wanted + static_cast<double>(unit_float(hash(test.leaf, looks))));
+  // What was cut for being wrong is known to hold so much error.
+  const ElementId parent = solver_.pool()[test.leaf].parent;
+  if (parent != kNoElement && errors_[parent].tests > 0)
+    wanted = std::min(wanted, kMostTests * 0.5 * errors_[parent].squares() / (kWorthAll * at_stake_));
   // Of many faces one would say little.
   return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(wanted)));
 }
@@ -224,6 +230,7 @@ bool AdaptiveGather::cut() {
   std::sort(worst.begin(), worst.end(), [&](ElementId a, ElementId b) {
     return regarded[a] > regarded[b] || (regarded[a] == regarded[b] && a < b);
   });
+  at_stake_ = std::max(allowed, mendable);
   if (mendable <= allowed || is_spent()) return false;
   const double left = std::max(kLeft * allowed, kLeftByRound * mendable);
   size_t count = 0;

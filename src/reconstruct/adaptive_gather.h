@@ -117,6 +117,7 @@ class AdaptiveGather {
   std::vector<uint32_t> leaf_faces_;  // faces of the leaves being tested
   std::vector<LeafError> errors_;     // by element; area 0: not tested
   double mean_light_ = 1;             // lux, by area that counts
+  double at_stake_ = 0;               // lux^2 m^2: error found that cuts might mend, or what is allowed
   size_t solved_elements_ = 0;        // those that the solver knows
   uint64_t places_tested_ = 0, first_gathers_ = 0;
   std::vector<uint8_t> cut_;  // by element: the solver's leaves that were cut here

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "element/paint.h"
 #include "math/colour.h"
+#include "scene/place_claim.h"
 
 namespace goldthread {
 namespace {
@@ -33,6 +34,11 @@ const Material& material_of(const SurfaceSet& set, const Part& part) {
   return set.scene->materials[part.material];
 }
 
+PlaceClaim claim_of(const SurfaceSet& set, uint32_t triangle) {
+  const PlacedTriangle t = placed(set, triangle);
+  return {triangle, t.exitance(), material_of(set, t.part).lit_behind(), t.area(set)};
+}
+
 }  // namespace
 
 bool contends_for_place(const SurfaceSet& set, uint32_t triangle) {
@@ -41,17 +47,7 @@ bool contends_for_place(const SurfaceSet& set, uint32_t triangle) {
 }
 
 bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other) {
-  const PlacedTriangle a = placed(set, owner), b = placed(set, other);
-  const bool both_sides = material_of(set, a.part).lit_behind(),
-             other_both_sides = material_of(set, b.part).lit_behind();
-  const float own_light = a.exitance(), other_light = b.exitance();
-  if (own_light < other_light) return false;
-  if (own_light == other_light) {
-    if (both_sides != other_both_sides) return both_sides;
-    if (owner >= other) return false;
-  }
-  // One side cannot take the place of two.
-  return both_sides || (!other_both_sides && dot(a.area(set), b.area(set)) > 0);
+  return owns_place(claim_of(set, owner), claim_of(set, other));
 }
 
 void settle_overlaps(SurfaceSet& set, std::span<const std::pair<uint32_t, uint32_t>> covered,

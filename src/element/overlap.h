@@ -12,9 +12,7 @@ namespace goldthread {
 /// glass, since such share the light as they are, and not where it is unlit.
 bool contends_for_place(const SurfaceSet& set, uint32_t triangle);
 
-/// Whether the first of two contenders that overlap gets their common area: of two that face the same way
-/// (two-sided ones face both), what emits more, else what is two-sided, else the lower number. A lamp of one
-/// side in a surface of two takes nothing from it, since it is not there on the other: both keep their light.
+/// Whether the first of two contenders that overlap gets their common area (scene/place_claim.h).
 bool owns_place(const SurfaceSet& set, uint32_t owner, uint32_t other);
 
 /// Gives every place one owner. `covered` are pairs (which, by which) of the world's triangles, in order,

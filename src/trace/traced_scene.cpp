@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "math/colour.h"
 #include "mesh/triangle_mesh.h"
+#include "visibility/coincident.h"
 
 namespace goldthread {
 namespace {
@@ -169,6 +171,21 @@ TracedScene::TracedScene(const Scene& scene) : scene_(scene), texels_(scene.imag
       positions_, corners_, see_through,
       [this](uint32_t triangle, vec2 weights, const Ray&) { return passing(triangle, weights); });
   epsilon_ = caster_->epsilon();
+  find_covered();
+}
+
+PlaceClaim TracedScene::claim_of(uint32_t triangle) const {
+  const float light = luminance(emission(triangle, vec2(1.0f / 3)));
+  const vec3 normal = triangles_[triangle].normal;
+  return {triangle, light, parts_[triangles_[triangle].part].lit_behind, area(triangle) * normal};
+}
+
+void TracedScene::find_covered() {
+  const PlaceClaims claims{
+      [this](uint32_t t) { return !material(t).unlit && !material(t).is_see_through(); },
+      [this](uint32_t first, uint32_t second) { return owns_place(claim_of(first), claim_of(second)); }};
+  covered_ = find_coincident(positions_, corners_, *caster_, claims, CancelToken());
+  for (const auto& [triangle, owner] : covered_) triangles_[triangle].covered = true;
 }
 
 void TracedScene::add(uint32_t instance, uint32_t primitive) {
@@ -204,7 +221,7 @@ void TracedScene::add(uint32_t instance, uint32_t primitive) {
     for (const uint8_t set : used)
       part.texcoords[set].push_back({source.texcoords[set][index[0]], source.texcoords[set][index[1]],
                                      source.texcoords[set][index[2]]});
-    triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t});
+    triangles_.push_back({mirrored ? -normal : normal, static_cast<uint32_t>(parts_.size()), t, false});
   }
   part.triangle_count = static_cast<uint32_t>(triangles_.size()) - part.first_triangle;
   has_translucent_ |= part.triangle_count > 0 && part.translucent;
@@ -242,7 +259,30 @@ void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.weights = hit.weights;
   met.normal = from_front ? triangle.normal : -triangle.normal;
   met.live = !part.unlit && (from_front || part.lit_behind);
-  if (!met.live && !part.unlit) look_for_front(ray, met);
+  if (triangle.covered) look_for_owner(ray, met);
+  if (!met.live && !met.part->unlit) look_for_front(ray, met);
+}
+
+bool TracedScene::lies_on(const vec3& p, uint32_t triangle, float tolerance) const {
+  return lies_on_triangle(p, corner(triangle, 0), corner(triangle, 1), corner(triangle, 2), tolerance);
+}
+
+// Makes a meeting one with another triangle in the same place.
+void TracedScene::give_to(uint32_t triangle, const vec3& p, const Ray& ray, Meeting& met) const {
+  const dvec3 a(corner(triangle, 0)), u = dvec3(corner(triangle, 1)) - a, v = dvec3(corner(triangle, 2)) - a;
+  const dvec3 n = cross(u, v), w = dvec3(p) - a;
+  const double squared = dot(n, n);
+  met.triangle = triangle;
+  met.part = &parts_[triangles_[triangle].part];
+  met.weights = vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared);
+  met.live = is_live(triangle, ray.direction);
+}
+
+void TracedScene::look_for_owner(const Ray& ray, Meeting& met) const {
+  const vec3 p = ray.origin + met.distance * ray.direction;
+  auto pair = std::lower_bound(covered_.begin(), covered_.end(), std::pair(met.triangle, 0u));
+  for (; pair != covered_.end() && pair->first == met.triangle; ++pair)
+    if (lies_on(p, pair->second, 2 * epsilon_)) return give_to(pair->second, p, ray, met);
 }
 
 void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
@@ -252,16 +292,9 @@ void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
   caster_->near(p, tolerance, [&](uint32_t t) {
     if (t >= found || !is_live(t, ray.direction) || material(t).is_see_through()) return;
     if (std::abs(dot(triangles_[t].normal, met.normal)) < 0.999f) return;
-    if (lies_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2), tolerance)) found = t;
+    if (lies_on(p, t, tolerance)) found = t;
   });
-  if (found == Hit::kMiss) return;
-  const dvec3 a(corner(found, 0)), u = dvec3(corner(found, 1)) - a, v = dvec3(corner(found, 2)) - a;
-  const dvec3 n = cross(u, v), w = dvec3(p) - a;
-  const double squared = dot(n, n);
-  met.triangle = found;
-  met.part = &parts_[triangles_[found].part];
-  met.weights = vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared);
-  met.live = true;
+  if (found != Hit::kMiss) give_to(found, p, ray, met);
 }
 
 template <typename T>

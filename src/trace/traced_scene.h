@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "scene/place_claim.h"
 #include "scene/scene.h"
 #include "trace/texel_store.h"
 #include "visibility/ray_caster.h"
@@ -44,9 +46,10 @@ struct TracedPart {
 
 /// One triangle of the world.
 struct TracedTriangle {
-  vec3 normal{0};       ///< unit, to the front: by the winding, turned where the instance mirrors
-  uint32_t part = 0;    ///< TracedScene::parts()
-  uint32_t source = 0;  ///< its number in the source primitive
+  vec3 normal{0};        ///< unit, to the front: by the winding, turned where the instance mirrors
+  uint32_t part = 0;     ///< TracedScene::parts()
+  uint32_t source = 0;   ///< its number in the source primitive
+  bool covered = false;  ///< whether another triangle owns some of its place
 };
 
 /// Where a ray ends.
@@ -71,9 +74,9 @@ class TracedScene {
   TracedScene& operator=(const TracedScene&) = delete;
 
   /// The nearest surface. Of alpha-masked and blended ones, and of glass, a share of rays, their coverage, is
-  /// stopped. Where
-  /// the black back of one sheet is met and another sheet in the same place shows its front, as in plates
-  /// without thickness that are modelled as two, it is the front.
+  /// stopped. Where surfaces overlap in one plane it is the place's owner (scene/place_claim.h), and
+  /// where the black back of one sheet is met and another sheet in the same place shows its front, as in
+  /// plates without thickness that are modelled as two, it is the front.
   Meeting closest(const Ray& ray) const;
   /// What `closest` makes of what the ray caster says.
   void meet(const Ray& ray, const Hit& hit, Meeting& met) const;
@@ -160,6 +163,11 @@ class TracedScene {
   template <typename T>
   T interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const;
   bool is_live(uint32_t triangle, const vec3& direction) const;
+  PlaceClaim claim_of(uint32_t triangle) const;
+  void find_covered();
+  bool lies_on(const vec3& p, uint32_t triangle, float tolerance) const;
+  void give_to(uint32_t triangle, const vec3& p, const Ray& ray, Meeting& met) const;
+  void look_for_owner(const Ray& ray, Meeting& met) const;
   void look_for_front(const Ray& ray, Meeting& met) const;
 
   const Scene& scene_;
@@ -169,6 +177,7 @@ class TracedScene {
   std::vector<vec3> positions_;  ///< world
   std::vector<UVec3> corners_;   ///< per triangle, into positions_
   std::unique_ptr<RayCaster> caster_;
+  std::vector<std::pair<uint32_t, uint32_t>> covered_;  ///< (triangle, by which), in order
   float epsilon_ = 0;
   bool has_translucent_ = false;
 };

@@ -171,6 +171,27 @@ TEST(PathTracer, MirroredInstancesKeepTheirFront) {
   EXPECT_EQ(Traced(scene).at(vec3(0), kUp, 256).mean.x, 0);
 }
 
+TEST(PathTracer, OfTwoSurfacesInOnePlaneTheFirstIsThere) {
+  // A plate over a lamp, in one or two paints; cut differently, so that rays could meet either.
+  const auto under = [](std::vector<float> reflectances) {
+    Scene scene;
+    uint32_t cuts = 1;
+    for (const float reflectance : reflectances) {
+      Material paint = diffuse(reflectance);
+      paint.double_sided = true;
+      add(scene, parallelogram(vec3(-2, 2, -2), vec3(4, 0, 0), vec3(0, 0, 4), cuts), add(scene, paint));
+      cuts += 2;
+    }
+    add(scene, square(3, 0, true), add(scene, diffuse(0)));
+    scene.lights.push_back(lamp(LightKind::kPoint, 100, vec3(0, 1, 0)));
+    return Traced(std::move(scene)).at(vec3(1, 0, 0), kUp, 4096);
+  };
+  const IrradianceValue white = under({0.8f}), black = under({0});
+  ASSERT_GT(white.mean.y, 1.2 * black.mean.y);
+  expect_estimates(under({0.8f, 0}), white.mean, 0.02, 0.02);
+  expect_estimates(under({0, 0.8f}), black.mean, 0.02, 1e-4);
+}
+
 TEST(PathTracer, UnlitSurfacesBlockAndNeitherShineNorReflect) {
   Scene scene = floor_scene(0);
   add(scene, square(1, 1, false), diffuse(0.9f, 10));

@@ -14,7 +14,8 @@ namespace {
 // the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
-// The share of all error that is left of which a leaf must be likely to hold as much to be tested at all of them.
+// The share of all error that is left of which a leaf must be likely to hold as much to be tested at all of
+// them.
 constexpr double kWorthAll = 1e-3;
 // How many times as many places later looks go to, for leaves that seem right.
 constexpr double kMoreLater = 4;
@@ -161,7 +162,7 @@ void AdaptiveGather::test_leaves(bool again) {
       },
       16);
   stats_.rays += {rays.load(), nanoseconds.load()};
-  places_tested_ += places.load();
+  stats_.places += places.load();
 }
 
 void AdaptiveGather::cut_now(std::vector<ElementId> leaves) {

@@ -95,7 +95,7 @@ class AdaptiveGather {
   uint32_t places_to_test(const Test& test, const LeafFaces& faces, double unit_areas) const;
   LeafError test(const Test& test, double unit_area, RayCount& count) const;
   void test_leaves(bool again);
-  uint64_t gathers() const { return stats_.points + places_tested_; }
+  uint64_t gathers() const { return stats_.points + stats_.places; }
   bool is_spent() const {
     if (options_.full && options_.full()) return true;
     return static_cast<double>(gathers()) > options_.growth * static_cast<double>(first_gathers_);
@@ -119,7 +119,7 @@ class AdaptiveGather {
   double mean_light_ = 1;             // lux, by area that counts
   double at_stake_ = 0;               // lux^2 m^2: error found that cuts might mend, or what is allowed
   size_t solved_elements_ = 0;        // those that the solver knows
-  uint64_t places_tested_ = 0, first_gathers_ = 0;
+  uint64_t first_gathers_ = 0;
   std::vector<uint8_t> cut_;  // by element: the solver's leaves that were cut here
 };
 

@@ -25,6 +25,7 @@ struct ReconstructOptions {
 struct ReconstructStats {
   RayCount rays;
   uint64_t points = 0;
+  uint64_t places = 0;    ///< between them that were looked at, to see what is wrong there
   uint64_t outliers = 0;  ///< leaves whose own light was gathered first
   double error = 0;       ///< what `ReconstructOptions::error` bounds, as it is in the end
   /// Root mean square by area of the error of the light between the points, over its mean, as gathering at

@@ -99,6 +99,29 @@ TEST(AdaptiveGather, TheErrorIsWhatWasAskedFor) {
   }
 }
 
+// Of the thousands of leaves along a shadow's edge right below a lamp each holds little of the error, and
+// they need few places each, bright as they are.
+TEST(AdaptiveGather, FewPlacesTellWhatIsLeftOfTheBrightest) {
+  Scene scene;
+  test::add(scene, test::square(0.05f, 0, true), test::diffuse(0.0f));
+  test::add(scene, test::square(2, -1, true), test::diffuse(0.0f));
+  Material screen = test::diffuse(0.0f);
+  screen.unlit = true;
+  test::add(scene, test::parallelogram({0.0025f, -0.075f, 0.025f}, {0.075f, 0, 0.005f}, {0.0125f, 0.15f, 0}),
+            std::move(screen));
+  scene.lights.push_back(test::lamp(LightKind::kPoint, 5, {0, 0, 0.05f}));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  ReconstructOptions options;
+  options.error = 0.02;
+  options.growth = 1000;
+  ReconstructStats stats;
+  AdaptiveGather gather(*solved.solver, options, CancelToken(), stats);
+  gather.run();
+  EXPECT_LT(stats.error, 0.02);
+  EXPECT_LT(stats.places, 6 * stats.points);
+}
+
 TEST(AdaptiveGather, APatternHidesSomeOfTheError) {
   const auto cuts = [](bool patterned) {
     Scene scene = half_in_shadow();

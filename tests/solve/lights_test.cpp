@@ -128,6 +128,29 @@ TEST(SpotLight, LightsItsConeOnly) {
   });
 }
 
+// None of the few places that a link to so large a floor looks at lies in the cone.
+TEST(SpotLight, ASmallPoolOnALargeFloorIsFound) {
+  Scene scene;
+  test::add(scene, test::parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}),
+            test::add(scene, test::diffuse(0)));
+  Light spot = point_light({7.3f, -4.1f, 1.5f}, 100);
+  spot.kind = LightKind::kSpot;
+  spot.direction = {0, 0, -1};
+  spot.inner_cone = 0.2f;
+  spot.outer_cone = 0.3f;
+  scene.lights.push_back(spot);
+  scene.lights.push_back(point_light({-8, 9, 3}, 20));  // so that there is light without it
+  Solved solved(std::move(scene));
+  solved.solve();
+  const double inner = std::cos(0.2), outer = std::cos(0.3);
+  const double flux = 100 * 2 * double(kPi) * ((1 - inner) + (inner - outer) / 3);
+  double pool = 0;
+  for_each_floor_leaf(solved, [&](const Element& e, double irradiance) {
+    if (length(e.centre - vec3(7.3f, -4.1f, 0)) < 1) pool += double(e.area) * irradiance;
+  });
+  EXPECT_NEAR(pool / flux, 1, 0.05);
+}
+
 TEST(Sun, CosineLawAndShadow) {
   const vec3 direction = normalize(vec3(0.4f, 0, -1));
   for (const bool screen : {false, true}) {

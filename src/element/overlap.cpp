@@ -36,7 +36,9 @@ const Material& material_of(const SurfaceSet& set, const Part& part) {
 
 PlaceClaim claim_of(const SurfaceSet& set, uint32_t triangle) {
   const PlacedTriangle t = placed(set, triangle);
-  return {triangle, t.exitance(), material_of(set, t.part).lit_behind(), t.area(set)};
+  const auto part = static_cast<uint32_t>(&t.part - set.parts.data());
+  return {place_order(part, set.tree(t.part).mesh.source_triangles[t.triangle]), t.exitance(),
+          material_of(set, t.part).lit_behind(), t.area(set)};
 }
 
 }  // namespace

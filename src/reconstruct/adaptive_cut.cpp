@@ -14,8 +14,8 @@ namespace {
 // the second.
 constexpr double kLeastTests = 4000;
 constexpr uint32_t kMostTests = 8;
-// The share of all error that is left of which a leaf must be likely to hold as much to be tested at all of
-// them.
+// The share of all error there was before a cut of which a leaf must be likely to hold as much to be tested
+// at all of them.
 constexpr double kWorthAll = 1e-3;
 // How many times as many places later looks go to, for leaves that seem right.
 constexpr double kMoreLater = 4;
@@ -109,7 +109,7 @@ uint32_t AdaptiveGather::places_to_test(const Test& test, const LeafFaces& faces
   // What was cut for being wrong is known to hold so much error.
   const ElementId parent = solver_.pool()[test.leaf].parent;
   if (parent != kNoElement && errors_[parent].tests > 0)
-    wanted = std::min(wanted, kMostTests * 0.5 * errors_[parent].squares() / (kWorthAll * at_stake_));
+    wanted = std::min(wanted, kMostTests * 0.5 * errors_[parent].counted / (kWorthAll * at_stake_));
   // Of many faces one would say little.
   return std::max(test.faces > 1 ? 3u : 1u, static_cast<uint32_t>(std::ceil(wanted)));
 }
@@ -220,7 +220,7 @@ bool AdaptiveGather::cut() {
   double mendable = 0;
   for (ElementId id = 0; id < errors_.size(); ++id) {
     if (!is_leaf(id)) continue;
-    regarded[id] = counted(id);
+    regarded[id] = errors_[id].counted = counted(id);
     squares += regarded[id];
     if (!(regarded[id] > 0) || pool[id].indivisible) continue;
     if (regarded[id] <= kNothing * allowed) continue;

@@ -69,6 +69,7 @@ class AdaptiveGather {
     double area = 0, square = 0;    // m^2, lux^2: mean over the tests
     vec3 light{0};                  // lux, mean
     uint32_t tests = 0, looks = 0;  // places, and how often places were chosen
+    double counted = 0;             // lux^2 m^2, by regard and by what can be seen of it, when last weighed
     double squares() const { return area * square; }
     void add(const LeafError& more);
   };

@@ -27,29 +27,11 @@ CornerKey key_of(const TracedScene& scene, uint32_t triangle) {
   return key;
 }
 
-vec2 to_triangle(double u, double v) {
-  const float root = std::sqrt(static_cast<float>(u)), share = static_cast<float>(v);
-  return {root * (1 - share), root * share};
-}
-
-bool is_even(const Material& m) {
-  return !m.emission_texture.present() && !m.is_see_through();
-}
-
-/// Lumens that leave a triangle, its texture averaged over a few dozen points.
+/// Lumens that leave a triangle.
 double power_of(const TracedScene& scene, uint32_t triangle) {
-  const Material& m = scene.material(triangle);
-  const bool even = is_even(m);
-  const uint32_t count = even ? 1 : 64;
-  double sum = 0;
-  for (uint32_t i = 0; i < count; ++i) {
-    const SobolPoint p = sobol_point(i, triangle);
-    const vec2 weights = even ? vec2(1 / 3.0f) : to_triangle(unit_double(p.u), unit_double(p.v));
-    sum +=
-        static_cast<double>(luminance(scene.emission(triangle, weights)) * scene.coverage(triangle, weights));
-  }
-  const double sides = m.double_sided ? 2 : 1;
-  return sum / count * sides * static_cast<double>(scene.area(triangle) * kPi);
+  const double sides = scene.material(triangle).double_sided ? 2 : 1;
+  return static_cast<double>(scene.mean_luminance(triangle)) * sides *
+         static_cast<double>(scene.area(triangle) * kPi);
 }
 
 Emitter emitter_of(const TracedScene& scene, uint32_t triangle) {
@@ -60,7 +42,9 @@ Emitter emitter_of(const TracedScene& scene, uint32_t triangle) {
   e.normal = scene.triangles()[triangle].normal;
   e.triangle = triangle;
   e.double_sided = scene.material(triangle).double_sided;
-  e.even = is_even(scene.material(triangle));
+  const Material& material = scene.material(triangle);
+  e.covered = scene.triangles()[triangle].covered;
+  e.even = !material.emission_texture.present() && !material.is_see_through() && !e.covered;
   e.nits = e.even ? scene.emission(triangle, vec2(0)) : vec3(0);
   return e;
 }
@@ -69,15 +53,20 @@ Emitter emitter_of(const TracedScene& scene, uint32_t triangle) {
 
 EmitterTable::EmitterTable(const TracedScene& scene)
     : scene_(scene), density_(scene.triangles().size(), 0.0f) {
-  std::map<CornerKey, uint32_t> places;
+  const auto shines = [&](uint32_t t) { return scene.material(t).emits() && !scene.material(t).unlit; };
+  std::map<CornerKey, uint32_t> places;  // and who of all with these corners is there
+  for (uint32_t t = 0; t < density_.size(); ++t) {
+    if (!shines(t)) continue;
+    uint32_t& there = places.try_emplace(key_of(scene, t), t).first->second;
+    if (scene.owns(t, there)) there = t;
+  }
   std::vector<uint32_t> twins, originals;
   double total = 0;
   for (uint32_t t = 0; t < density_.size(); ++t) {
-    if (!scene.material(t).emits() || scene.material(t).unlit) continue;
-    const auto [place, is_new] = places.try_emplace(key_of(scene, t), t);
-    if (!is_new) {
+    if (!shines(t)) continue;
+    if (const uint32_t there = places.at(key_of(scene, t)); there != t) {
       twins.push_back(t);
-      originals.push_back(place->second);
+      originals.push_back(there);
       continue;
     }
     const double power = power_of(scene, t);
@@ -127,6 +116,8 @@ void EmitterTable::sample(std::span<const SobolPoint> points, EmitterPoints& dra
 
 vec3 EmitterTable::nits(const Emitter& emitter, vec2 weights) const {
   if (emitter.even) return emitter.nits;
+  const vec3 p = emitter.corner + weights.x * emitter.across + weights.y * emitter.up;
+  if (emitter.covered && scene_.is_covered(emitter.triangle, p)) return vec3(0);
   return scene_.emission(emitter.triangle, weights) * scene_.coverage(emitter.triangle, weights);
 }
 

@@ -21,7 +21,8 @@ struct Emitter {
   float density = 0;           ///< points per m2: its share of all power over its area
   uint32_t triangle = 0;
   bool double_sided = false;
-  bool even = true;  ///< one luminance all over, and opaque
+  bool covered = false;  ///< whether another triangle owns some of its place
+  bool even = true;      ///< one luminance all over, opaque and not covered
 };
 
 /// Points that were drawn, one a path.
@@ -44,12 +45,12 @@ class EmitterTable {
   /// A point drawn by power, evenly within each triangle: maps the unit square onto the emitters, so that
   /// even points stay even. The table must not be empty, and `points` are at most kLanes.
   void sample(std::span<const SobolPoint> points, EmitterPoints& drawn) const;
-  /// Luminance times coverage at a point.
+  /// Luminance times coverage at a point; 0 where another surface lies in the same place and owns it.
   vec3 nits(const Emitter& emitter, vec2 weights) const;
 
   /// Points per m2 that `sample` puts on a triangle of the scene; 0 for those that are not in the table. Of
-  /// triangles over the very same corners, of which a ray can meet only one, all answer for the one that is
-  /// in the table.
+  /// triangles over the very same corners, of which a ray can meet only one, all answer for their owner,
+  /// which is in the table.
   float density(uint32_t triangle) const { return density_[triangle]; }
 
  private:

@@ -2,10 +2,12 @@
 // hashing (Owen 1997; Burley, Practical Hash-based Owen Scrambling, 2020), padded to as many dimensions as
 // are asked for.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <span>
 
 #include "base/rng.h"
+#include "math/vec.h"
 
 namespace goldthread {
 
@@ -61,6 +63,12 @@ inline SobolPoint hashed_point(uint32_t index, uint32_t seed) {
 /// A fraction as a number in [0, 1).
 inline double unit_double(uint32_t fraction) {
   return static_cast<double>(fraction) * 0x1p-32;
+}
+
+/// Maps the unit square evenly onto a triangle: weights of its corners 1 and 2.
+inline vec2 to_triangle(double u, double v) {
+  const float root = std::sqrt(static_cast<float>(u)), share = static_cast<float>(v);
+  return {root * (1 - share), root * share};
 }
 
 /// Which of all paths: sample `index` of the randomisation `seed`.

@@ -6,6 +6,7 @@
 
 #include "math/colour.h"
 #include "mesh/triangle_mesh.h"
+#include "trace/scrambled_sobol.h"
 #include "visibility/coincident.h"
 
 namespace goldthread {
@@ -174,16 +175,37 @@ TracedScene::TracedScene(const Scene& scene) : scene_(scene), texels_(scene.imag
   find_covered();
 }
 
-PlaceClaim TracedScene::claim_of(uint32_t triangle) const {
-  const float light = luminance(emission(triangle, vec2(1.0f / 3)));
-  const vec3 normal = triangles_[triangle].normal;
-  return {triangle, light, parts_[triangles_[triangle].part].lit_behind, area(triangle) * normal};
+float TracedScene::mean_luminance(uint32_t triangle) const {
+  const TracedPart& part = parts_[triangles_[triangle].part];
+  if (!part.shines) return 0;
+  const Material& m = *part.material;
+  const bool even = !m.emission_texture.present() && !m.is_see_through();
+  const uint32_t count = even ? 1 : 64;
+  float sum = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const SobolPoint p = sobol_point(i, triangle);
+    const vec2 weights = even ? vec2(1 / 3.0f) : to_triangle(unit_double(p.u), unit_double(p.v));
+    sum += luminance(emission(triangle, weights)) * coverage(triangle, weights);
+  }
+  return sum / static_cast<float>(count);
+}
+
+bool TracedScene::contends(uint32_t triangle) const {
+  return !material(triangle).unlit && !material(triangle).is_see_through();
+}
+
+bool TracedScene::owns(uint32_t owner, uint32_t other) const {
+  const auto claim_of = [this](uint32_t t) {
+    const TracedPart& part = parts_[triangles_[t].part];
+    return PlaceClaim{place_order(triangles_[t].part, triangles_[t].source), mean_luminance(t),
+                      part.lit_behind, area(t) * triangles_[t].normal};
+  };
+  return contends(owner) && contends(other) && owns_place(claim_of(owner), claim_of(other));
 }
 
 void TracedScene::find_covered() {
-  const PlaceClaims claims{
-      [this](uint32_t t) { return !material(t).unlit && !material(t).is_see_through(); },
-      [this](uint32_t first, uint32_t second) { return owns_place(claim_of(first), claim_of(second)); }};
+  const PlaceClaims claims{[this](uint32_t t) { return contends(t); },
+                           [this](uint32_t first, uint32_t second) { return owns(first, second); }};
   covered_ = find_coincident(positions_, corners_, *caster_, claims, CancelToken());
   for (const auto& [triangle, owner] : covered_) triangles_[triangle].covered = true;
 }
@@ -259,8 +281,8 @@ void TracedScene::meet(const Ray& ray, const Hit& hit, Meeting& met) const {
   met.weights = hit.weights;
   met.normal = from_front ? triangle.normal : -triangle.normal;
   met.live = !part.unlit && (from_front || part.lit_behind);
-  if (triangle.covered) look_for_owner(ray, met);
-  if (!met.live && !met.part->unlit) look_for_front(ray, met);
+  if (!met.live && !part.unlit) look_for_front(ray, met);
+  if (triangles_[met.triangle].covered) look_for_owner(ray, met);
 }
 
 bool TracedScene::lies_on(const vec3& p, uint32_t triangle, float tolerance) const {
@@ -274,15 +296,28 @@ void TracedScene::give_to(uint32_t triangle, const vec3& p, const Ray& ray, Meet
   const double squared = dot(n, n);
   met.triangle = triangle;
   met.part = &parts_[triangles_[triangle].part];
-  met.weights = vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared);
+  met.weights = glm::max(vec2(dot(cross(w, v), n) / squared, dot(cross(u, w), n) / squared), vec2(0));
+  met.weights /= std::max(1.0f, met.weights.x + met.weights.y);
   met.live = is_live(triangle, ray.direction);
 }
 
+uint32_t TracedScene::owner_at(uint32_t triangle, const vec3& p) const {
+  uint32_t found = Hit::kMiss;
+  if (!triangles_[triangle].covered) return found;
+  const float tolerance = 2 * epsilon_;
+  caster_->near(p, tolerance, [&](uint32_t t) {
+    if (t < found && std::binary_search(covered_.begin(), covered_.end(), std::pair(triangle, t)) &&
+        lies_on(p, t, tolerance))
+      found = t;
+  });
+  return found;
+}
+
+// Owners may be covered in their turn.
 void TracedScene::look_for_owner(const Ray& ray, Meeting& met) const {
   const vec3 p = ray.origin + met.distance * ray.direction;
-  auto pair = std::lower_bound(covered_.begin(), covered_.end(), std::pair(met.triangle, 0u));
-  for (; pair != covered_.end() && pair->first == met.triangle; ++pair)
-    if (lies_on(p, pair->second, 2 * epsilon_)) return give_to(pair->second, p, ray, met);
+  for (uint32_t owner = owner_at(met.triangle, p); owner != Hit::kMiss; owner = owner_at(owner, p))
+    give_to(owner, p, ray, met);
 }
 
 void TracedScene::look_for_front(const Ray& ray, Meeting& met) const {
@@ -449,6 +484,10 @@ uint64_t TracedScene::fingerprint() const {
       if (!uv.empty()) print.add(vec3(interpolate(uv, t, vec2(0.25f, 0.5f)), 0));
     if (!source.colours.empty()) print.add(vec3(interpolate(source.colours, t, vec2(0.25f, 0.5f))));
     if (!source.tangents.empty()) print.add(vec3(interpolate(source.tangents, t, vec2(0.25f, 0.5f))));
+  }
+  for (const auto& [triangle, owner] : covered_) {
+    print.add(triangle);
+    print.add(owner);
   }
   for (const Image& image : scene_.images) add_image(print, image);
   for (const Material& m : scene_.materials) add_material(print, m);

@@ -108,6 +108,12 @@ class TracedScene {
                       dot(met.normal, triangles_[met.triangle].normal) < 0;
     return dark ? vec3(0) : emission(met.triangle, met.weights);
   }
+  /// Mean luminance of what a triangle emits, times coverage: its texture at a few dozen points.
+  float mean_luminance(uint32_t triangle) const;
+  /// Whether `owner` gets what the two triangles have in common, should they overlap (scene/place_claim.h).
+  bool owns(uint32_t owner, uint32_t other) const;
+  /// Whether another triangle owns the place `p` of this one.
+  bool is_covered(uint32_t triangle, const vec3& p) const { return owner_at(triangle, p) != Hit::kMiss; }
   /// Whether anything is translucent.
   bool has_translucent() const { return has_translucent_; }
   /// Asks memory for what `meet` reads of a triangle, and does not wait for it.
@@ -163,10 +169,11 @@ class TracedScene {
   template <typename T>
   T interpolate(const std::vector<T>& values, uint32_t triangle, vec2 weights) const;
   bool is_live(uint32_t triangle, const vec3& direction) const;
-  PlaceClaim claim_of(uint32_t triangle) const;
+  bool contends(uint32_t triangle) const;
   void find_covered();
   bool lies_on(const vec3& p, uint32_t triangle, float tolerance) const;
   void give_to(uint32_t triangle, const vec3& p, const Ray& ray, Meeting& met) const;
+  uint32_t owner_at(uint32_t triangle, const vec3& p) const;
   void look_for_owner(const Ray& ray, Meeting& met) const;
   void look_for_front(const Ray& ray, Meeting& met) const;
 

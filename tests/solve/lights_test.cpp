@@ -151,6 +151,27 @@ TEST(SpotLight, ASmallPoolOnALargeFloorIsFound) {
   EXPECT_NEAR(pool / flux, 1, 0.05);
 }
 
+// What hangs below a ceiling and shines down brings it nothing, and does not have it cut.
+TEST(Lights, ACeilingAboveLampsThatShineDownStaysWhole) {
+  Scene scene;
+  test::add(scene, test::parallelogram({-20, -20, 3}, {0, 40, 0}, {40, 0, 0}),
+            test::add(scene, test::diffuse(0)));
+  test::add(scene, test::parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}),
+            test::add(scene, test::diffuse(0)));
+  Light spot = point_light({7.3f, -4.1f, 2.9f}, 100), panel = point_light({-6.2f, 3.1f, 2.95f}, 100);
+  spot.kind = LightKind::kSpot;
+  panel.kind = LightKind::kRectangle;
+  panel.size = vec2(0.6f);
+  for (const Light& light : {spot, panel}) scene.lights.push_back(light);
+  for (Light& light : scene.lights) light.direction = {0, 0, -1};
+  Solved solved(std::move(scene));
+  solved.solve();
+  size_t above = 0, below = 0;
+  for (const ElementId id : solved.leaves()) ++(solved.pool()[id].centre.z > 1.5f ? above : below);
+  EXPECT_LE(above, 2u);
+  EXPECT_GT(below, 50u);
+}
+
 TEST(Sun, CosineLawAndShadow) {
   const vec3 direction = normalize(vec3(0.4f, 0, -1));
   for (const bool screen : {false, true}) {

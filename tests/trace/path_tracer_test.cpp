@@ -192,6 +192,30 @@ TEST(PathTracer, OfTwoSurfacesInOnePlaneTheFirstIsThere) {
   expect_estimates(under({0, 0.8f}), black.mean, 0.02, 1e-4);
 }
 
+TEST(PathTracer, OfThreeLampsInOnePlaneTheBrightestIsThere) {
+  const auto under = [](std::vector<float> lights, bool two_sided, uint32_t more_cuts) {
+    Scene scene;
+    uint32_t cuts = 1;
+    for (const float light : lights) {
+      Material lamp = diffuse(0.5f, light);
+      lamp.double_sided = two_sided;
+      add(scene, parallelogram(vec3(-1, 2, -1), vec3(2, 0, 0), vec3(0, 0, 2), cuts), add(scene, lamp));
+      cuts += more_cuts;
+    }
+    add(scene, square(3, 0, true), add(scene, diffuse(0.5f)));
+    return Traced(std::move(scene)).at(vec3(1, 0, 0), kUp, 4096);
+  };
+  for (const bool two_sided : {false, true}) {
+    const IrradianceValue bright = under({100}, two_sided, 1);
+    ASSERT_GT(bright.mean.y, 1);
+    for (const uint32_t more_cuts : {0u, 1u, 2u}) {
+      SCOPED_TRACE(more_cuts);
+      expect_estimates(under({10, 30, 100}, two_sided, more_cuts), bright.mean, 0.02, 0.01);
+      expect_estimates(under({10, 100, 30}, two_sided, more_cuts), bright.mean, 0.02, 0.01);
+    }
+  }
+}
+
 TEST(PathTracer, UnlitSurfacesBlockAndNeitherShineNorReflect) {
   Scene scene = floor_scene(0);
   add(scene, square(1, 1, false), diffuse(0.9f, 10));

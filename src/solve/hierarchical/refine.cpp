@@ -64,15 +64,39 @@ double likely_factor(const ElementPool& pool, const Link& link) {
   return std::max(static_cast<double>(link.unoccluded), most * seen);
 }
 
+// The most that a point of `e` can lie above the plane through `at` with unit normal `n`: exact for polygons,
+// and for flat clusters that of a disc of their thickness.
+float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const vec3& n) {
+  const Element& e = pool[id];
+  if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
+    float highest = std::numeric_limits<float>::lowest();
+    const ElementPolygon polygon = pool.polygon(id);  // must outlive its span
+    for (const vec3& corner : polygon.span()) highest = std::max(highest, dot(corner - at, n));
+    return highest;
+  }
+  const vec3 axis = normalize_or(e.summed_normal, n);
+  const float reach = e.thickness * std::abs(dot(axis, n)) + e.radius * length(cross(axis, n));
+  return dot(e.centre - at, n) + std::min(reach, e.radius);
+}
+
+// Whether a lamp shines to one half of space only, and all of the receiver lies in the other.
+bool shines_away(const ElementPool& pool, const Light& light, ElementId receiver) {
+  const bool half =
+      light.has_area() || (light.kind == LightKind::kSpot && !light.profile && light.outer_cone <= kPi / 2);
+  return half && highest_above(pool, receiver, light.position, light.direction) <= -light.radius;
+}
+
 // What a lamp could bring at most on the average, per candela, to a receiver too large for its light to be
 // told by a few samples: all that is within reach of it, and of its cone. 0 for smaller ones.
 double most_of_lamp(const ElementPool& pool, const Link& link) {
   const Element& r = pool[link.receiver];
-  if (pool[link.source].kind != ElementKind::kPoint) return 0;
+  if (pool[link.source].kind != ElementKind::kPoint || !(r.area > 0)) return 0;
   const Light& light = pool.light(link.source);
   const vec3 way = r.centre - light.position;
   const double distance = static_cast<double>(length(way)), radius = static_cast<double>(r.radius);
   if (r.flat && dot(way, normalize_or(r.summed_normal, vec3(0))) > light.reach() + light.radius) return 0;
+  if (shines_away(pool, light, link.receiver)) return 0;
+  if (light.range > 0 && distance - radius >= static_cast<double>(light.range)) return 0;
   const bool within = distance <= radius;
   // Of the receiver's ball; a plane fills no more than half of what is around.
   const double ball =
@@ -107,21 +131,6 @@ bool may_open_receiver(const Element& e, float least_area) {
 
 bool may_open_source(const Element& e, float least_area) {
   return e.kind == ElementKind::kSky ? divisible(e) : may_open_receiver(e, least_area);
-}
-
-// The most that a point of `e` can lie above the plane through `at` with unit normal `n`: exact for polygons,
-// and for flat clusters that of a disc of their thickness.
-float highest_above(const ElementPool& pool, ElementId id, const vec3& at, const vec3& n) {
-  const Element& e = pool[id];
-  if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
-    float highest = std::numeric_limits<float>::lowest();
-    const ElementPolygon polygon = pool.polygon(id);  // must outlive its span
-    for (const vec3& corner : polygon.span()) highest = std::max(highest, dot(corner - at, n));
-    return highest;
-  }
-  const vec3 axis = normalize_or(e.summed_normal, n);
-  const float reach = e.thickness * std::abs(dot(axis, n)) + e.radius * length(cross(axis, n));
-  return dot(e.centre - at, n) + std::min(reach, e.radius);
 }
 
 // Whether a flat element's plane cuts another.

@@ -41,8 +41,8 @@ Emitter emitter_of(const TracedScene& scene, uint32_t triangle) {
   e.up = scene.corner(triangle, 2) - e.corner;
   e.normal = scene.triangles()[triangle].normal;
   e.triangle = triangle;
-  e.double_sided = scene.material(triangle).double_sided;
   const Material& material = scene.material(triangle);
+  e.double_sided = material.double_sided;
   e.covered = scene.triangles()[triangle].covered;
   e.even = !material.emission_texture.present() && !material.is_see_through() && !e.covered;
   e.nits = e.even ? scene.emission(triangle, vec2(0)) : vec3(0);

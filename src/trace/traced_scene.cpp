@@ -6,6 +6,7 @@
 
 #include "math/colour.h"
 #include "mesh/triangle_mesh.h"
+#include "scene/place_claim.h"
 #include "trace/scrambled_sobol.h"
 #include "visibility/coincident.h"
 

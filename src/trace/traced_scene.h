@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "scene/place_claim.h"
 #include "scene/scene.h"
 #include "trace/texel_store.h"
 #include "visibility/ray_caster.h"

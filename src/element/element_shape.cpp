@@ -154,10 +154,9 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   ElementPolygon polygon;
   polygon.count = patch.corners;
   std::copy(corners.begin(), corners.end(), polygon.corners.begin());
-  const PolygonSampler places(polygon, vec3(0), patch.triangle);
   for (uint32_t i = 0; i < kPoints; ++i) {
     const UnitSquarePoint uv = r2_point(i, number);
-    const Paint one = paint_of(part, patch.triangle, places.sample(uv.u, uv.v).position);
+    const Paint one = paint_of(part, patch.triangle, sample_polygon(polygon, vec3(0), uv.u, uv.v).position);
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
@@ -271,15 +270,6 @@ void ElementPool::fill_child(ElementId id) {
 
 namespace {
 
-// Whether `p` lies within a convex polygon of normal `n`.
-bool is_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) {
-  for (size_t i = 0; i < polygon.count; ++i) {
-    const vec3 &a = polygon.corners[i], &b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
-    if (dot(cross(n, b - a), p - a) < 0) return false;
-  }
-  return true;
-}
-
 // How far `p` lies within a convex polygon of unit normal `n`; negative outside.
 float depth_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) {
   float least = std::numeric_limits<float>::max();
@@ -310,15 +300,8 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& at) const {
         first = point.triangle - node.first < node.count;
       }
     } else if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
-      const ElementPolygon a = polygon(child);
-      first = is_within(a, point.normal, point.position);
-      if (!first) {
-        // By rounding a point may lie in neither: then the one is taken that it is nearer to.
-        const ElementPolygon b = polygon(child + 1);
-        first =
-            !is_within(b, point.normal, point.position) &&
-            depth_within(a, point.normal, point.position) >= depth_within(b, point.normal, point.position);
-      }
+      first = depth_within(polygon(child), point.normal, point.position) >=
+              depth_within(polygon(child + 1), point.normal, point.position);
     } else {
       return id;
     }
@@ -340,9 +323,8 @@ uint32_t ElementPool::find_triangle(const Element& cluster, const SurfacePoint& 
   while (depth > 0 && best < 0) {
     const ClusterRef ref = stack[--depth];
     if (is_triangle(ref)) {
-      const ElementPolygon triangle = triangle_polygon(cluster, triangle_of(ref));
-      if (is_within(triangle, point.normal, point.position)) return triangle_of(ref);
-      const float within = depth_within(triangle, point.normal, point.position);
+      const float within =
+          depth_within(triangle_polygon(cluster, triangle_of(ref)), point.normal, point.position);
       if (within > best) {
         best = within;
         found = triangle_of(ref);

@@ -1,7 +1,5 @@
 // Rectangle and disc lamps as points see them.
 #pragma once
-#include <optional>
-
 #include "element/element_pool.h"
 
 namespace goldthread {
@@ -39,7 +37,7 @@ class AreaLampView {
   vec3 n_, direction_;
   float height_;  // metres, of x before the lamp's plane
   ElementPolygon corners_;
-  std::optional<SphericalPolygon> directions_;  // where it is near
+  bool near_;
 };
 
 }  // namespace goldthread

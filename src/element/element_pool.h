@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "element/leaf_mesh.h"
 #include "element/paint.h"
+#include "element/polygon_view.h"
 #include "element/sky_cells.h"
 #include "element/surface_set.h"
 #include "math/box.h"
@@ -64,24 +66,7 @@ struct ElementPassage {
   ElementId twin = kNoElement;  ///< the same piece of the other side; kNoElement where that is not cut so far
 };
 
-/// The one of a cluster's triangles on which the point lies.
-constexpr uint32_t kSomeTriangle = 0xffffffffu;
-
-/// A point on an element's surface: a triangle's, or that of an outline (FlatOutlines) that stands for many.
-struct SurfacePoint {
-  vec3 position{0};
-  vec3 normal{0};         ///< unit, on the element's side
-  uint32_t triangle = 0;  ///< of the part's tree, for points on clusters and triangles; or kSomeTriangle
-};
-
 constexpr uint32_t kStoredSamples = 16;
-
-/// Corners of a convex polygon, counter-clockwise from the side that it sends to.
-struct ElementPolygon {
-  std::array<vec3, kMaxPolygon> corners;
-  size_t count = 0;
-  std::span<const vec3> span() const { return {corners.data(), count}; }
-};
 
 /// A plane across which a triangle or patch is cut in two: dot(normal, p) = offset, normal unit or, for the
 /// cut that shape alone suggests, 0.
@@ -143,6 +128,9 @@ class ElementPool {
   /// or behind.
   SurfacePoint sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
                               float& weight) const;
+  /// The one polygon that an element is (a patch, a triangle, a cluster with an outline), to draw places of
+  /// as sample_at does, or, by its PolygonView, as sample_towards; nothing for other clusters.
+  std::optional<PolygonSampler> one_polygon(ElementId id) const;
   /// The deepest element below `id` that holds a point of it; a volume cluster is not searched.
   ElementId deepest(ElementId id, const SurfacePoint& point) const;
   /// The direction within a sky element that belongs to (u, v), spread evenly over its solid angle.
@@ -214,7 +202,6 @@ class ElementPool {
   void store_polygon(Patch& patch);
   void fill_sky(Element& element, uint32_t cell) const;
   SurfacePoint sample_triangle(const Element& element, uint32_t triangle, float u, float v) const;
-  SurfacePoint sample_polygon(const ElementPolygon& polygon, const vec3& normal, float u, float v) const;
   void polygon_quadrature(const ElementPolygon& polygon, const vec3& normal, std::span<SurfacePoint> points,
                           bool second) const;
   ElementPolygon triangle_polygon(const Element& element, uint32_t triangle) const;

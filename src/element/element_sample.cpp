@@ -9,8 +9,7 @@
 namespace goldthread {
 namespace {
 
-// Steradians below which a polygon is sampled by area: it is about even there, and the angles of so small a
-// spherical triangle are lost in rounding.
+// Steradians below which a piece of sky is sampled as if it were flat.
 constexpr float kSmallSolidAngle = 0.05f;
 
 // Descends a binary tree by chance: one number in [0, 1) makes all the choices, and what it has left serves
@@ -39,12 +38,6 @@ class Descent {
   float u_, step_ = 0x1p-24f;
 };
 
-vec3 polygon_normal(const ElementPolygon& p) {
-  vec3 sum(0);
-  for (size_t i = 1; i + 1 < p.count; ++i) sum += area_vector(p.corners[0], p.corners[i], p.corners[i + 1]);
-  return normalize_or(sum, vec3(0, 1, 0));
-}
-
 }  // namespace
 
 SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
@@ -57,8 +50,8 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
   }
   const Element& element = elements_[id];
   if (element.kind == ElementKind::kPatch)
-    return sample_polygon(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)),
-                          descent.rest(v), v);
+    return PolygonSampler(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)), 0)
+        .sample(descent.rest(v), v);
   if (element.kind == ElementKind::kTriangle)
     return sample_triangle(element, element.shape, descent.rest(v), v);
   const FaceClusterTree& tree = set_->tree(set_->parts[element.part]);
@@ -71,9 +64,7 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
   while (!is_triangle(ref)) {
     if (!tree.outlines.of(ref).empty()) {
       const ElementPolygon polygon = outline(element, ref);
-      SurfacePoint point = sample_polygon(polygon, polygon_normal(polygon), descent.rest(v), v);
-      point.triangle = kSomeTriangle;
-      return point;
+      return PolygonSampler(polygon, polygon.normal(), kSomeTriangle).sample(descent.rest(v), v);
     }
     const FaceCluster& node = tree.nodes[ref];
     const float share = node.area > 0 ? std::clamp(area_of(node.child[0]) / node.area, 0.0f, 1.0f) : 0.5f;
@@ -84,118 +75,72 @@ SurfacePoint ElementPool::sample_at(ElementId id, float u, float v) const {
 
 SurfacePoint ElementPool::sample_triangle(const Element& element, uint32_t triangle, float u, float v) const {
   const ElementPolygon polygon = triangle_polygon(element, triangle);
-  const vec3 n = cross(polygon.corners[1] - polygon.corners[0], polygon.corners[2] - polygon.corners[0]);
-  SurfacePoint point = sample_polygon(polygon, normalize_or(n, vec3(0, 1, 0)), u, v);
-  point.triangle = triangle;
-  return point;
+  return PolygonSampler(polygon, polygon.normal(), triangle).sample(u, v);
 }
 
-SurfacePoint ElementPool::sample_polygon(const ElementPolygon& polygon, const vec3& normal, float u,
-                                         float v) const {
-  // A fan triangle by area, then a point in it by the square-root map.
-  const vec3& a = polygon.corners[0];
-  float total = 0;
-  std::array<float, kMaxPolygon> areas{};
-  for (size_t i = 1; i + 1 < polygon.count; ++i) {
-    areas[i] = length(cross(polygon.corners[i] - a, polygon.corners[i + 1] - a));
-    total += areas[i];
+std::optional<PolygonSampler> ElementPool::one_polygon(ElementId id) const {
+  const Element& element = elements_[id];
+  if (element.kind == ElementKind::kPatch)
+    return PolygonSampler(patch_polygon(element), normalize_or(element.summed_normal, vec3(0, 1, 0)), 0);
+  if (element.kind == ElementKind::kTriangle) {
+    const ElementPolygon polygon = triangle_polygon(element, element.shape);
+    return PolygonSampler(polygon, polygon.normal(), element.shape);
   }
-  float target = u * total;
-  size_t i = 1;
-  while (i + 2 < polygon.count && target >= areas[i]) target -= areas[i++];
-  const float s = std::sqrt(std::clamp(areas[i] > 0 ? target / areas[i] : 0.5f, 0.0f, 1.0f));
-  const vec3 &b = polygon.corners[i], &c = polygon.corners[i + 1];
-  // A hair's breadth from the edges: on one, a point would lie in the wall that stands there as much as
-  // before it.
-  constexpr float kDrawnIn = 1e-3f;
-  const vec3 position = (1 - s) * a + s * ((1 - v) * b + v * c), centroid = (a + b + c) / 3.0f;
-  return {position + kDrawnIn * (centroid - position), normal};
+  if (element.kind != ElementKind::kCluster ||
+      set_->tree(set_->parts[element.part]).outlines.of(element.shape).empty())
+    return std::nullopt;
+  const ElementPolygon polygon = outline(element, element.shape);
+  return PolygonSampler(polygon, polygon.normal(), kSomeTriangle);
 }
 
 SurfacePoint ElementPool::sample_towards(ElementId id, const vec3& x, const vec3& n, float u, float v,
                                          float& weight) const {
+  if (const std::optional<PolygonSampler> whole = one_polygon(id))
+    return PolygonView(*whole, x).sample(n, u, v, weight);
   const Element& element = elements_[id];
-  ElementPolygon polygon;
   float chance = 1;
-  uint32_t triangle = element.shape;
-  if (element.kind == ElementKind::kPatch) {
-    polygon = patch_polygon(element);
-  } else if (element.kind == ElementKind::kTriangle) {
-    polygon = triangle_polygon(element, element.shape);
-  } else {
-    const Part& part = set_->parts[element.part];
-    const FaceClusterTree& tree = set_->tree(part);
-    // By area over squared distance, as far as that can be told from centres. In the tree's own space, which
-    // is similar to the world: only ratios count.
-    const mat3 linear(part.to_world);
-    const vec3 local = (x - vec3(part.to_world[3])) * linear / dot(linear[0], linear[0]);
-    const auto pull = [&](ClusterRef ref) {
-      if (is_triangle(ref)) {
-        const UVec3& c = tree.mesh.triangles[triangle_of(ref)];
-        const vec3 &p = tree.mesh.positions[c.x], &q = tree.mesh.positions[c.y],
-                   &r = tree.mesh.positions[c.z];
-        const vec3 d = (p + q + r) / 3.0f - local;
-        return 0.5f * length(cross(q - p, r - p)) / (dot(d, d) + 0.25f * dot(q - p, q - p));
-      }
-      const FaceCluster& node = tree.nodes[ref];
-      const vec3 d = node.centre - local;
-      return node.area / (dot(d, d) + 0.25f * node.radius * node.radius);
-    };
-    ClusterRef ref = element.shape;
-    Descent descent(u);
-    while (!is_triangle(ref)) {
-      if (!tree.outlines.of(ref).empty()) break;
-      const FaceCluster& node = tree.nodes[ref];
-      const float a = pull(node.child[0]), b = pull(node.child[1]);
-      const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
-      const bool first = descent.first(share);
-      ref = node.child[first ? 0 : 1];
-      chance *= first ? share : 1 - share;
+  const Part& part = set_->parts[element.part];
+  const FaceClusterTree& tree = set_->tree(part);
+  // By area over squared distance, as far as that can be told from centres. In the tree's own space, which
+  // is similar to the world: only ratios count.
+  const mat3 linear(part.to_world);
+  const vec3 local = (x - vec3(part.to_world[3])) * linear / dot(linear[0], linear[0]);
+  const auto pull = [&](ClusterRef ref) {
+    if (is_triangle(ref)) {
+      const UVec3& c = tree.mesh.triangles[triangle_of(ref)];
+      const vec3 &p = tree.mesh.positions[c.x], &q = tree.mesh.positions[c.y], &r = tree.mesh.positions[c.z];
+      const vec3 d = (p + q + r) / 3.0f - local;
+      return 0.5f * length(cross(q - p, r - p)) / (dot(d, d) + 0.25f * dot(q - p, q - p));
     }
-    u = descent.rest(v);
-    triangle = is_triangle(ref) ? triangle_of(ref) : kSomeTriangle;
-    polygon = is_triangle(ref) ? triangle_polygon(element, triangle) : outline(element, ref);
+    const FaceCluster& node = tree.nodes[ref];
+    const vec3 d = node.centre - local;
+    return node.area / (dot(d, d) + 0.25f * node.radius * node.radius);
+  };
+  ClusterRef ref = element.shape;
+  Descent descent(u);
+  while (!is_triangle(ref)) {
+    if (!tree.outlines.of(ref).empty()) break;
+    const FaceCluster& node = tree.nodes[ref];
+    const float a = pull(node.child[0]), b = pull(node.child[1]);
+    const float share = std::clamp(a / std::max(a + b, 1e-30f), 0.0f, 1.0f);
+    const bool first = descent.first(share);
+    ref = node.child[first ? 0 : 1];
+    chance *= first ? share : 1 - share;
   }
-  std::array<vec3, kMaxPolygon> from_x;
-  for (size_t i = 0; i < polygon.count; ++i) from_x[i] = polygon.corners[i] - x;
-  const vec3 normal = polygon_normal(polygon);
-  weight = 0;
-  float angle = 0, whole = 0;
-  for (size_t i = 1; i + 1 < polygon.count; ++i) {
-    angle += solid_angle(normalize_or(from_x[0], vec3(0)), normalize_or(from_x[i], vec3(0)),
-                         normalize_or(from_x[i + 1], vec3(0)));
-    whole += 0.5f * length(cross(polygon.corners[i] - polygon.corners[0],
-                                 polygon.corners[i + 1] - polygon.corners[0]));
-  }
-  const float plane = -dot(from_x[0], normal);
-  if (plane <= 0) return {polygon.corners[0], normal};
-  if (angle < kSmallSolidAngle) {
-    SurfacePoint point = sample_polygon(polygon, normal, u, v);
-    point.triangle = triangle;
-    const vec3 d = point.position - x;
-    const float squared = dot(d, d);
-    weight = std::max(0.0f, dot(d, n)) * plane * whole / (squared * squared * chance + 1e-30f);
-    return point;
-  }
-  const vec3 direction = sample_spherical_polygon({from_x.data(), polygon.count}, u, v);
-  const float towards = -dot(direction, normal), here = dot(direction, n);
-  if (towards <= 1e-5f) return {polygon.corners[0], normal};
-  weight = std::max(0.0f, here) * angle / chance;
-  // At a grazing angle the rounding of the direction moves the point along the plane, perhaps past an edge
-  // and into what stands there or even behind it: it is drawn in by more than that.
-  constexpr float kRounding = 4e-6f;
-  const float distance = plane / towards;
-  const vec3 position = x + distance * direction;
-  vec3 inward = -position;
-  for (size_t i = 0; i < polygon.count; ++i) inward += polygon.corners[i] / static_cast<float>(polygon.count);
-  const float step = std::min(kRounding * distance / towards, 0.1f * length(inward));
-  return {position + step * normalize_or(inward, vec3(0)), normal, triangle};
+  u = descent.rest(v);
+  const uint32_t triangle = is_triangle(ref) ? triangle_of(ref) : kSomeTriangle;
+  const ElementPolygon polygon =
+      is_triangle(ref) ? triangle_polygon(element, triangle) : outline(element, ref);
+  const SurfacePoint point =
+      PolygonView(PolygonSampler(polygon, polygon.normal(), triangle), x).sample(n, u, v, weight);
+  weight /= chance;
+  return point;
 }
 
 vec3 ElementPool::sky_direction(ElementId id, float u, float v) const {
   const std::array<vec3, 3>& c = sky_corners(id);
-  if (solid_angle(c[0], c[1], c[2]) >= kSmallSolidAngle)
-    return sample_spherical_triangle(c[0], c[1], c[2], u, v);
+  const float angle = solid_angle(c[0], c[1], c[2]);
+  if (angle >= kSmallSolidAngle) return sample_spherical_triangle(c[0], c[1], c[2], angle, u, v);
   const float s = std::sqrt(u);
   return normalize((1 - s) * c[0] + s * ((1 - v) * c[1] + v * c[2]));
 }

@@ -154,9 +154,10 @@ Paint ElementPool::patch_paint(uint32_t number) const {
   ElementPolygon polygon;
   polygon.count = patch.corners;
   std::copy(corners.begin(), corners.end(), polygon.corners.begin());
+  const PolygonSampler places(polygon, vec3(0), patch.triangle);
   for (uint32_t i = 0; i < kPoints; ++i) {
     const UnitSquarePoint uv = r2_point(i, number);
-    const Paint one = paint_of(part, patch.triangle, sample_polygon(polygon, vec3(0), uv.u, uv.v).position);
+    const Paint one = paint_of(part, patch.triangle, places.sample(uv.u, uv.v).position);
     paint.reflectance += one.reflectance / static_cast<float>(kPoints);
     paint.exitance += one.exitance / static_cast<float>(kPoints);
     paint.coverage += one.coverage / static_cast<float>(kPoints);
@@ -270,6 +271,15 @@ void ElementPool::fill_child(ElementId id) {
 
 namespace {
 
+// Whether `p` lies within a convex polygon of normal `n`.
+bool is_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) {
+  for (size_t i = 0; i < polygon.count; ++i) {
+    const vec3 &a = polygon.corners[i], &b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
+    if (dot(cross(n, b - a), p - a) < 0) return false;
+  }
+  return true;
+}
+
 // How far `p` lies within a convex polygon of unit normal `n`; negative outside.
 float depth_within(const ElementPolygon& polygon, const vec3& n, const vec3& p) {
   float least = std::numeric_limits<float>::max();
@@ -300,8 +310,15 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& at) const {
         first = point.triangle - node.first < node.count;
       }
     } else if (e.kind == ElementKind::kTriangle || e.kind == ElementKind::kPatch) {
-      first = depth_within(polygon(child), point.normal, point.position) >=
-              depth_within(polygon(child + 1), point.normal, point.position);
+      const ElementPolygon a = polygon(child);
+      first = is_within(a, point.normal, point.position);
+      if (!first) {
+        // By rounding a point may lie in neither: then the one is taken that it is nearer to.
+        const ElementPolygon b = polygon(child + 1);
+        first =
+            !is_within(b, point.normal, point.position) &&
+            depth_within(a, point.normal, point.position) >= depth_within(b, point.normal, point.position);
+      }
     } else {
       return id;
     }
@@ -311,33 +328,47 @@ ElementId ElementPool::deepest(ElementId id, const SurfacePoint& at) const {
 }
 
 // The triangle of a cluster that holds a point, or comes nearest to: of rounding's making there may be none.
+// The child in whose sphere the point lies deeper is looked into first: mostly the way leads straight down.
 uint32_t ElementPool::find_triangle(const Element& cluster, const SurfacePoint& point) const {
   const Part& part = set_->parts[cluster.part];
   const FaceClusterTree& tree = set_->tree(part);
+  // Parts are scaled evenly: the transposed is the inverse but for the scale, which the distances keep.
+  const vec3 local =
+      transpose(mat3(part.to_world)) * (point.position - vec3(part.to_world[3])) / (part.scale * part.scale);
+  struct Waiting {
+    ClusterRef ref;
+    float distance, radius;  ///< from the point to the sphere's centre, and the sphere's
+  };
   constexpr size_t kStack = 256;
-  std::array<ClusterRef, kStack> stack;
+  std::array<Waiting, kStack> stack;
   size_t depth = 0;
-  stack[depth++] = cluster.shape;
   uint32_t found = tree.nodes[cluster.shape].first;
   float best = std::numeric_limits<float>::lowest();
-  while (depth > 0 && best < 0) {
-    const ClusterRef ref = stack[--depth];
+  const auto add = [&](ClusterRef ref) {
     if (is_triangle(ref)) {
-      const float within =
-          depth_within(triangle_polygon(cluster, triangle_of(ref)), point.normal, point.position);
-      if (within > best) {
-        best = within;
-        found = triangle_of(ref);
-      }
-      continue;
+      const ElementPolygon triangle = triangle_polygon(cluster, triangle_of(ref));
+      const float within = is_within(triangle, point.normal, point.position)
+                               ? 0
+                               : depth_within(triangle, point.normal, point.position);
+      if (within <= best) return;
+      best = within;
+      found = triangle_of(ref);
+    } else if (depth < kStack) {
+      const FaceCluster& node = tree.nodes[ref];
+      stack[depth++] = {ref, part.scale * length(node.centre - local), 1.001f * part.scale * node.radius};
     }
-    const FaceCluster& node = tree.nodes[ref];
-    const vec3 d = vec3(part.to_world * vec4(node.centre, 1)) - point.position;
-    // How far outside all that is in there the point must be.
-    const float outside = length(d) - 1.001f * node.radius * part.scale;
-    if (-outside < best || depth + 2 > kStack) continue;
-    stack[depth++] = node.child[1];
-    stack[depth++] = node.child[0];
+  };
+  add(cluster.shape);
+  while (depth > 0 && best < 0) {
+    const Waiting at = stack[--depth];
+    if (at.radius - at.distance < best) continue;  // all triangles in there are farther away
+    const size_t first = depth;
+    const FaceCluster& node = tree.nodes[at.ref];
+    add(node.child[0]);
+    add(node.child[1]);
+    if (depth == first + 2 &&
+        stack[first].distance * stack[first + 1].radius < stack[first + 1].distance * stack[first].radius)
+      std::swap(stack[first], stack[first + 1]);
   }
   return found;
 }

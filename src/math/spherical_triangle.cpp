@@ -1,9 +1,6 @@
 #include "math/spherical_triangle.h"
 
 #include <algorithm>
-#include <array>
-
-#include "math/form_factor.h"
 
 namespace goldthread {
 
@@ -12,41 +9,41 @@ float solid_angle(const vec3& a, const vec3& b, const vec3& c) {
   return 2 * std::atan2(triple, 1 + dot(a, b) + dot(b, c) + dot(c, a));
 }
 
-vec3 sample_spherical_triangle(const vec3& a, const vec3& b, const vec3& c, float u, float v) {
-  const vec3 ab = normalize_or(cross(a, b), vec3(0)), bc = normalize_or(cross(b, c), vec3(0)),
-             ca = normalize_or(cross(c, a), vec3(0));
-  const auto angle = [](const vec3& p, const vec3& q) {
-    return std::acos(std::clamp(dot(p, q), -1.0f, 1.0f));
-  };
-  const float alpha = angle(ab, -ca), beta = angle(bc, -ab), gamma = angle(ca, -bc);
-  const float area = u * (alpha + beta + gamma - kPi);
-  const float cos_alpha = std::cos(alpha), sin_alpha = std::sin(alpha), cos_c = dot(a, b);
-  // The triangle a, b, c' of that area has its third corner on the arc from a to c.
-  const float s = std::sin(area - alpha), t = std::cos(area - alpha);
+vec3 sample_spherical_triangle(const vec3& a, const vec3& b, const vec3& c, float angle, float u, float v) {
+  const vec3 ab = normalize_or(cross(a, b), vec3(0)), ac = normalize_or(cross(a, c), vec3(0));
+  // alpha is the angle at a; the sine by its own, or small ones would be lost in rounding.
+  const vec2 alpha = vec2(dot(ab, ac), length(cross(ab, ac)));
+  const float unit = 1 / std::max(length(alpha), 1e-20f);
+  const float cos_alpha = unit * alpha.x, sin_alpha = unit * alpha.y, cos_c = dot(a, b), whole_b = dot(a, c);
+  // The triangle a, b, c' of the wanted area has its third corner on the arc from a to c. Here s and t are
+  // sine and cosine of area - alpha.
+  const float area = u * angle, sin_area = std::sin(area), cos_area = std::cos(area);
+  const float s = sin_area * cos_alpha - cos_area * sin_alpha,
+              t = cos_area * cos_alpha + sin_area * sin_alpha;
   const float p = t - cos_alpha, q = s + sin_alpha * cos_c;
   const float denominator = (q * s + p * t) * sin_alpha;
   const float cos_b = std::abs(denominator) > 1e-12f
-                          ? std::clamp(((q * t - p * s) * cos_alpha - q) / denominator, -1.0f, 1.0f)
-                          : dot(a, c);
-  const vec3 towards_c = normalize_or(c - dot(c, a) * a, b);
+                          ? std::min(std::max(((q * t - p * s) * cos_alpha - q) / denominator, whole_b), 1.0f)
+                          : whole_b;
+  const vec3 towards_c = normalize_or(c - whole_b * a, b);
   const vec3 corner = cos_b * a + std::sqrt(std::max(0.0f, 1 - cos_b * cos_b)) * towards_c;
   const float z = 1 - v * (1 - dot(corner, b));
   return z * b + std::sqrt(std::max(0.0f, 1 - z * z)) * normalize_or(corner - dot(corner, b) * b, a);
 }
 
-vec3 sample_spherical_polygon(std::span<const vec3> corners, float u, float v) {
-  std::array<vec3, kMaxPolygon> unit;
-  for (size_t i = 0; i < corners.size(); ++i) unit[i] = normalize_or(corners[i], vec3(0));
-  std::array<float, kMaxPolygon> angles{};
-  float total = 0;
-  for (size_t i = 1; i + 1 < corners.size(); ++i)
-    total += angles[i] = solid_angle(unit[0], unit[i], unit[i + 1]);
-  if (!(total > 0)) return vec3(0);
-  float target = u * total;
+SphericalPolygon::SphericalPolygon(std::span<const vec3> corners) : count_(corners.size()) {
+  for (size_t i = 0; i < count_; ++i) unit_[i] = normalize_or(corners[i], vec3(0));
+  for (size_t i = 1; i + 1 < count_; ++i)
+    total_ += angles_[i] = goldthread::solid_angle(unit_[0], unit_[i], unit_[i + 1]);
+}
+
+vec3 SphericalPolygon::sample(float u, float v) const {
+  if (!(total_ > 0)) return vec3(0);
+  float target = u * total_;
   size_t i = 1;
-  while (i + 2 < corners.size() && target >= angles[i]) target -= angles[i++];
-  const float share = angles[i] > 0 ? std::clamp(target / angles[i], 0.0f, 1.0f) : 0.5f;
-  return sample_spherical_triangle(unit[0], unit[i], unit[i + 1], share, v);
+  while (i + 2 < count_ && target >= angles_[i]) target -= angles_[i++];
+  const float share = angles_[i] > 0 ? std::clamp(target / angles_[i], 0.0f, 1.0f) : 0.5f;
+  return sample_spherical_triangle(unit_[0], unit_[i], unit_[i + 1], angles_[i], share, v);
 }
 
 }  // namespace goldthread

@@ -14,7 +14,10 @@ namespace {
 uint32_t rays_for(float share, const Link& link, ElementKind source, const GatherOptions& options) {
   if (share < options.ray_share) return 0;
   if (source == ElementKind::kPoint || source == ElementKind::kSun) return 1;
-  const bool mixed = link.visibility > 0 && link.visibility < 255;
+  // A source that would outshine all else is asked thoroughly, though the link's few rays all met the same:
+  // they know nothing of a sliver, such as a window that a point far inside sees the sky through.
+  const bool outshines = !options.trust_hidden && share > 0.5f;
+  const bool mixed = outshines || (link.visibility > 0 && link.visibility < 255);
   const float wanted = share * static_cast<float>(options.light_rays) * (mixed ? 2.0f : 0.5f);
   return static_cast<uint32_t>(
       std::clamp(std::ceil(wanted), mixed ? 2.0f : 1.0f, 2.0f * static_cast<float>(options.light_rays)));

@@ -7,7 +7,9 @@ namespace goldthread {
 struct GatherOptions {
   uint32_t light_rays = 32;
   float ray_share = 0.01f;
-  bool trust_hidden = true;  ///< whether a weak link whose rays all were stopped is dark at every point
+  /// Whether a link's rays are believed where they all met the same: a weak link whose rays were stopped is
+  /// dark at every point, and a strong one gets fewer rays than where something is in between.
+  bool trust_hidden = true;
   /// Whether the normal is bent from the surface's: then links say little of what comes, and of what they say
   /// is wholly seen a part may be below the surface. All are evaluated, with rays.
   bool bent = false;

@@ -177,12 +177,11 @@ LightSample Lamp::area_light_at(const vec3& origin, const vec3& normal, SobolPoi
   if (dot(middle, middle) < kNear * reach * reach) {
     const std::array<vec3, 4> corners{middle - across - up, middle + across - up, middle + across + up,
                                       middle - across + up};
-    std::array<vec3, 4> unit;
-    for (size_t i = 0; i < 4; ++i) unit[i] = normalize_or(corners[i], vec3(0));
-    const float all = solid_angle(unit[0], unit[1], unit[2]) + solid_angle(unit[0], unit[2], unit[3]);
+    const SphericalPolygon seen(corners);
+    const float all = seen.solid_angle();
     if (all > kLeastSolidAngle) {
-      const vec3 way = sample_spherical_polygon(corners, static_cast<float>(unit_double(p.u)),
-                                                static_cast<float>(unit_double(p.v)));
+      const vec3 way =
+          seen.sample(static_cast<float>(unit_double(p.u)), static_cast<float>(unit_double(p.v)));
       const float at_lamp = -dot(way, light_.direction);
       if (!(at_lamp > 0)) return light;
       light.way = way * (before / at_lamp);

@@ -79,6 +79,33 @@ TEST(PlaceGather, HardShadowsEndWhereTheyDo) {
   EXPECT_LT(light[1]->x, 0.2f * light[0]->x);  // only what comes by way of plate and floor
 }
 
+// A glowing ceiling above two black plates with a slit between them, which the few rays of a link miss. That all
+// of them met a plate is no reason to cast few more: the error would be twice as large.
+TEST(PlaceGather, ASliverOfABrightCeilingIsNotMissed) {
+  constexpr float kSlit = 0.002f;
+  Scene scene;
+  test::add(scene, test::square(2, 0, true), test::diffuse(0));
+  test::add(scene, test::square(2, 2, false), test::diffuse(0, 1000));
+  Material plate = test::diffuse(0);
+  plate.double_sided = true;
+  test::add(scene, test::parallelogram({0.3f + kSlit, -9, 1}, {9, 0, 0}, {0, 18, 0}), Material(plate));
+  test::add(scene, test::parallelogram({-9, -9, 1}, {9.3f, 0, 0}, {0, 18, 0}), std::move(plate));
+  Solved solved(std::move(scene), test::quick());
+  solved.solve();
+  std::vector<SurfacePlace> places;
+  for (float x = -0.4f; x < 1; x += 0.03f) places.push_back(on_square(x, 0.3f * x - 0.11f));
+  const auto light = light_at(solved, places);
+  double squares = 0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const vec3& p = places[i].position;
+    const float left = 0.6f - p.x, right = left + 2 * kSlit;  // the slit's edges, cast on the ceiling
+    const std::vector<vec3> seen{{left, -2, 2}, {left, 2, 2}, {right, 2, 2}, {right, -2, 2}};
+    const float exact = 1000 * dot(vec3(0, 0, 1), polygon_form_factor(p, {0, 0, 1}, seen));
+    squares += std::pow(double(light[i]->x / exact) - 1, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / double(places.size())), 0.2);
+}
+
 // A lamp lights a wall; by an edge of the wall a black floor sees little but the few centimetres above it,
 // which get a hundredth of what the wall's middle gets, and lie in the same leaf.
 TEST(PlaceGather, WallsAreReadWithinTheirLeaves) {

@@ -75,13 +75,13 @@ vec3 area_lamp_transfer(const Light& light, const vec3& x, const vec3& n) {
 
 AreaLampView::AreaLampView(const Light& light, const vec3& x, const vec3& n)
     : n_(n), direction_(light.direction), height_(height_before(light, x)) {
-  const vec3 d = light.position - x;
-  near_ = dot(d, d) < kNearLamp * light.reach() * light.reach();
   if (!(height_ > 0)) return;
   std::array<vec3, kMaxPolygon + 1> above;
   const ElementPolygon all = area_lamp_corners(light, x);
   corners_.count = clip_to_horizon(n, all.span(), above);
   std::copy_n(above.begin(), corners_.count, corners_.corners.begin());
+  const vec3 d = light.position - x;
+  if (dot(d, d) < kNearLamp * light.reach() * light.reach()) directions_.emplace(corners_.span());
 }
 
 vec3 AreaLampView::by_area(float u, float v) const {
@@ -100,8 +100,8 @@ vec3 AreaLampView::by_area(float u, float v) const {
 
 vec3 AreaLampView::way(float u, float v, float& weight) const {
   weight = 0;
-  if (near_) {
-    const vec3 unit = sample_spherical_polygon(corners_.span(), u, v);
+  if (directions_) {
+    const vec3 unit = directions_->sample(u, v);
     const float at_lamp = -dot(unit, direction_);
     if (!(at_lamp > 1e-6f)) return vec3(0);
     weight = std::max(0.0f, dot(unit, n_));

@@ -1,5 +1,7 @@
 // Rectangle and disc lamps as points see them.
 #pragma once
+#include <optional>
+
 #include "element/element_pool.h"
 
 namespace goldthread {
@@ -37,7 +39,7 @@ class AreaLampView {
   vec3 n_, direction_;
   float height_;  // metres, of x before the lamp's plane
   ElementPolygon corners_;
-  bool near_;
+  std::optional<SphericalPolygon> directions_;  // where it is near
 };
 
 }  // namespace goldthread

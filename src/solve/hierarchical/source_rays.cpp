@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "base/rng.h"
 #include "math/form_factor.h"
@@ -54,18 +55,20 @@ float timed_ray(const RayCaster& caster, const Ray& ray, RayCount& count, vec3* 
 
 // What the horizon of a point leaves of a piece of sky.
 struct SkyView {
-  std::array<vec3, kMaxPolygon + 1> corners;
-  size_t count = 0;
-  bool cut = false;
+  std::optional<SphericalPolygon> above;  // where it cuts
 
   SkyView(const ElementPool& pool, ElementId source, const vec3& n) {
     if (pool[source].kind != ElementKind::kSky) return;
     // Of a piece so small that polygons of directions are no longer precise, most will do.
     constexpr float kSmall = 0.05f;
     const SkyCell& cell = pool.sky_cell(source);
+    if (cell.solid_angle <= kSmall) return;
+    bool cut = false;
     for (const vec3& c : cell.corners) cut |= dot(c, n) < 0;
-    cut &= cell.solid_angle > kSmall;
-    if (cut) count = clip_to_horizon(n, cell.corners, corners);
+    if (!cut) return;
+    std::array<vec3, kMaxPolygon + 1> corners;
+    const size_t count = clip_to_horizon(n, cell.corners, corners);
+    above.emplace(std::span<const vec3>(corners.data(), count));
   }
 };
 
@@ -81,6 +84,9 @@ struct SourceSampler {
   const bool near = is_surface(e.kind) && e.kind != ElementKind::kVolume &&
                     dot(way, way) < kNearSource * e.radius * e.radius;
   const SkyView sky{pool, source, n};
+  const std::optional<PolygonSampler> polygon = is_surface(e.kind) ? pool.one_polygon(source) : std::nullopt;
+  const std::optional<PolygonView> view =
+      near && polygon ? std::optional<PolygonView>(std::in_place, *polygon, x) : std::nullopt;
 
   // Of what turns many ways, or sinks below the horizon, most points may be out of sight.
   bool hides_itself() const {
@@ -93,16 +99,16 @@ struct SourceSampler {
     const UnitSquarePoint uv = r2_point(i, turn);
     if (e.kind == ElementKind::kSky) {
       ray = {x + epsilon * n, pool.sky_direction(source, uv.u, uv.v)};
-      if (sky.cut) ray.direction = sample_spherical_polygon({sky.corners.data(), sky.count}, uv.u, uv.v);
+      if (sky.above) ray.direction = sky.above->sample(uv.u, uv.v);
       const float cosine = std::max(0.0f, dot(ray.direction, n));
       return cosine > 0 ? cosine * pool.sky_relative_luminance(source, ray.direction) : 0.0f;
     }
     float weight = 0;
     if (near) {
-      y = pool.sample_towards(source, x, n, uv.u, uv.v, weight);
+      y = view ? view->sample(n, uv.u, uv.v, weight) : pool.sample_towards(source, x, n, uv.u, uv.v, weight);
     } else {
       // Not one of the stored samples: the same sixteen for all receivers would err the same way for all.
-      y = pool.sample_at(source, uv.u, uv.v);
+      y = polygon ? polygon->sample(uv.u, uv.v) : pool.sample_at(source, uv.u, uv.v);
       const vec3 d = y.position - x;
       const float here = dot(d, n), there = -dot(d, y.normal), squared = dot(d, d);
       if (here <= 0 || there <= 0) return 0;

@@ -87,7 +87,7 @@ PairSample direction_sample(const TracedPatch& from, const vec3& x, const Traced
       continue;
     }
     if (!(angle > 0)) return {};
-    const vec3 way = sample_spherical_triangle(a, b, c, std::clamp(wanted / angle, 0.0f, 1.0f), at.v);
+    const vec3 way = sample_spherical_triangle(a, b, c, angle, std::clamp(wanted / angle, 0.0f, 1.0f), at.v);
     const float down = -dot(to.normal, way);
     if (!(down > 0)) return {};
     return {x + height / down * way, whole * std::max(0.0f, dot(from.normal, way))};

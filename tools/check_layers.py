@@ -19,6 +19,7 @@ ROOMS = {
     "element": WORLD | {"cluster"},
     "solve": WORLD | {"cluster", "visibility", "element"},
     "reconstruct": WORLD | {"cluster", "visibility", "element", "solve"},
+    "represent": WORLD | {"cluster", "visibility"},
     "trace": WORLD | {"cluster", "visibility"},
     "files": WORLD,
     "session": None,  # all rooms

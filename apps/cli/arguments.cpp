@@ -27,6 +27,7 @@ constexpr const char* kBakeExamples =
     "Examples:\n"
     "  goldthread bake room.glb -o lit.glb -o lit.png --quality high\n"
     "  goldthread bake room.glb -o lit.glb --output unlit\n"
+    "  goldthread bake room.glb -o lit.glb --output lightmap --page-size 2048\n"
     "  goldthread bake house.obj -o lit.glb --sky 10000lux --sun 80000 --sun-elevation 35\n"
     "  goldthread bake house.glb -o lit.glb --sky-model clear --place 59.3,18.1 --date 2026-06-21 --time "
     "15:00 \\\n"
@@ -51,7 +52,9 @@ const std::vector<std::pair<std::string, Quality>> kQualities = {{"draft", Quali
                                                                  {"high", Quality::kHigh},
                                                                  {"final", Quality::kFinal}};
 const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
-    {"vertex-light", OutputMode::kVertexLight}, {"unlit", OutputMode::kUnlit}};
+    {"vertex-light", OutputMode::kVertexLight},
+    {"unlit", OutputMode::kUnlit},
+    {"lightmap", OutputMode::kLightmap}};
 
 constexpr const char* kSceneFormats = "glTF, GLB, OBJ, PLY, STL, FBX or Collada";
 
@@ -155,11 +158,33 @@ void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
   verb.add_option("--json", options.json_file, "where to: a file, - to print")
       ->type_name("FILE")
       ->group(kResults);
-  verb.add_option("--output", texts.mode, "how the scene carries light: vertex-light or unlit (vertex-light)")
+  verb.add_option("--output", texts.mode,
+                  "how the scene carries light: vertex-light, unlit or lightmap (vertex-light)")
       ->type_name("MODE")
       ->check(CLI::IsMember(names_of(kOutputModes)).description(""))
       ->group(kResults);
   add_picture(verb, options.exposure, texts.picture, options.report_file);
+}
+
+constexpr const char* kLightmapNames[] = {"--page-size", "--pages", "--padding", "--texel-density",
+                                          "--map-files"};
+
+void add_lightmap(CLI::App& verb, LightmapOptions& options) {
+  const auto group = "Light maps (--output lightmap)";
+  verb.add_option("--page-size", options.page_size, "texels aside (1024)")->type_name("N")->group(group);
+  verb.add_option("--pages", options.pages, "how many pages at most (1)")->type_name("N")->group(group);
+  verb.add_option("--padding", options.padding, "free texels between charts (2)")
+      ->type_name("N")
+      ->group(group);
+  verb.add_option("--texel-density", options.texel_density,
+                  "texels a metre, fewer where the pages cannot hold them (what they hold)")
+      ->type_name("X")
+      ->group(group);
+  verb.add_option("--map-files", options.files,
+                  "pages as files besides, in lux, .exr or .hdr: room.exr stands for\nroom-0.exr, room-1.exr "
+                  "... and room.json, which lists them")
+      ->type_name("FILE")
+      ->group(group);
 }
 
 void add_bake_effort(CLI::App& verb, BakeCommand& bake, BakeTexts& texts) {
@@ -266,6 +291,11 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.error) return usage_error("--error: '" + texts.error + "' is no share", "write 0.02 or 2%");
   }
   options.mode = value_of(kOutputModes, texts.mode);
+  if (options.mode != OutputMode::kLightmap)
+    for (const char* name : kLightmapNames)
+      if (verb.count(name) > 0)
+        return usage_error(fmt::format("{} is about light maps, and none are asked for", name),
+                           "add --output lightmap");
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--max-memory") > 0) {
     options.max_memory = parse_bytes(texts.memory);
@@ -335,6 +365,7 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   CLI::App* bake_verb = app.add_subcommand("bake", "light a scene");
   bake_verb->add_option("SCENE", bake.options.input, kSceneFormats)->required();
   add_bake_output(*bake_verb, bake.options, texts);
+  add_lightmap(*bake_verb, bake.options.lightmap);
   add_bake_effort(*bake_verb, bake, texts);
   add_light(*bake_verb, texts.light);
   bake_verb->footer(kBakeExamples);

@@ -12,6 +12,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  goldthread compare room.gold --reference --points 2000 --target-error 1%\n"
     "  goldthread compare room.gold --reference --seen --picture-size 128x128\n"
+    "  goldthread compare room.gold --reference --texels --points 5000\n"
     "  goldthread compare draft.gold final.gold -o diff.png\n"
     "  goldthread compare mine.exr theirs.exr --json c.json";
 
@@ -29,6 +30,11 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   verb->add_flag("--seen", options.seen,
                  "of solutions: instead, the places that the camera sees, one a pixel of --picture-size")
       ->excludes("--points");
+  verb->add_flag("--light-maps", options.light_maps,
+                 "of solutions baked with --output lightmap: read their light from the maps");
+  verb->add_flag("--texels", options.texels,
+                 "the same in the middles of --points texels of A's maps, not at random places")
+      ->excludes("--seen");
   verb->add_option("--samples", command.samples, "of the reference: paths a point (1024)")
       ->type_name("N")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 36).description(""));

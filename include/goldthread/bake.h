@@ -18,6 +18,18 @@ enum class OutputMode {
   kUnlit,        ///< COLOR_0 = linear outgoing light, KHR_materials_unlit
   kVertexLight,  ///< float attribute _IRRADIANCE (lux) beside untouched materials; _IRRADIANCE_BACK on
                  ///< two-sided ones
+  kLightmap,     ///< textures under MOZ_lightmap beside materials that are else as they were
+};
+
+/// How light maps are laid out, for kLightmap.
+struct LightmapOptions {
+  uint32_t page_size = 1024;  ///< texels aside, 4 to 16384
+  uint32_t pages = 1;         ///< at most, 1 to 256
+  uint32_t padding = 2;       ///< free texels between charts, 0 to 64
+  /// Pages as files of their own besides, irradiance in lux, .exr or .hdr: room.exr stands for room-0.exr,
+  /// room-1.exr ... and room.json, which lists them. Empty for none.
+  std::string files;
+  double texel_density = 0;  ///< texels a metre, lowered where the pages cannot hold it; 0: what they hold
 };
 
 struct BakeOptions : LightOptions {
@@ -30,6 +42,7 @@ struct BakeOptions : LightOptions {
   std::string points_file;
   std::string json_file;  ///< the light at the points, lux; empty for none, "-" for standard output
   OutputMode mode = OutputMode::kVertexLight;
+  LightmapOptions lightmap;
   Quality quality = Quality::kMedium;
   /// Root mean square error that is tolerated, over the mean of the light, 0.003 to 0.5: in the place of
   /// `quality`, whose presets are 0.15, 0.06, 0.03 and 0.015. What was reached is estimated and reported; a

@@ -17,6 +17,8 @@ struct CompareOptions {
 
   uint64_t points = 1000;              ///< random places over the lit surfaces, by area
   bool seen = false;                   ///< instead, what the camera sees at the middle of each pixel
+  bool light_maps = false;             ///< light is read from the solutions' light maps, not their vertices
+  bool texels = false;                 ///< the same at `points` of the texels of `first`, in their centres
   std::optional<uint64_t> samples;     ///< reference: a point; 1024 when neither this nor the next is given
   std::optional<double> target_error;  ///< reference: stop at this mean of standard error over irradiance
   std::optional<double> time_limit;    ///< reference: seconds for all of it

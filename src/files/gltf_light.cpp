@@ -9,23 +9,14 @@
 #include <utility>
 
 #include "files/gltf_light_nodes.h"
-#include "files/gltf_read_container.h"
 #include "files/gltf_unlit.h"
 
 namespace goldthread {
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
-/// Extensions of a primitive that number its vertices or triangles: meaningless on a refined mesh.
-constexpr const char* kTiedToMesh[] = {"CESIUM_primitive_outline", "FB_ngon_encoding"};
-
 template <typename T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-bool same_mesh(const LitPrimitive& a, const LitPrimitive& b) {
-  return a.source_mesh == b.source_mesh && same_bytes(a.origins, b.origins) && same_bytes(a.faces, b.faces);
 }
 
 bool same_light(const LitPrimitive& a, const LitPrimitive& b) {
@@ -51,27 +42,6 @@ uint64_t hash_of(const InstanceLight& light) {
   return hash;
 }
 
-/// Drops the name from extensionsUsed and extensionsRequired when nothing in the document uses it.
-bool mentions_extension(const Json& json, const char* name) {
-  if (json.is_object() && json.contains("extensions") && json["extensions"].contains(name)) return true;
-  if (!json.is_structured()) return false;
-  for (const Json& child : json)
-    if (mentions_extension(child, name)) return true;
-  return false;
-}
-
-void drop_unused_extension(Json& json, const char* name) {
-  if (mentions_extension(json, name)) return;
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    if (!json.contains(list)) continue;
-    Json kept = Json::array();
-    for (const Json& known : json[list])
-      if (known != name) kept.push_back(known);
-    json[list] = kept;
-    if (kept.empty()) json.erase(list);
-  }
-}
-
 class LightWriter {
  public:
   LightWriter(GltfDocument& document, const DocumentMap& map, const Scene& scene,
@@ -81,6 +51,7 @@ class LightWriter {
         scene_(scene),
         mode_(options.mode),
         read_(read),
+        geometry_(document, scene, read),
         unlit_(document, scene, options.exposure) {}
 
   Status add(const Lighting& lighting) {
@@ -95,15 +66,11 @@ class LightWriter {
     for (size_t g = 0; g < groups.size(); ++g)
       if (Status status = light_mesh(groups[g], *lights[g]); !status) return status;
     if (Status status = assign_meshes(document_, map_, groups, read_, scene_.file); !status) return status;
-    for (const char* name : {kDraco, "EXT_mesh_gpu_instancing", kTiedToMesh[0], kTiedToMesh[1]})
-      drop_unused_extension(document_.json, name);
+    geometry_.drop_unused_extensions();
     return Nothing{};
   }
 
  private:
-  const Primitive& source(const LitPrimitive& lit) const {
-    return scene_.meshes[scene_.instances[lit.instance].mesh].primitives[lit.primitive];
-  }
   uint32_t place(const LitPrimitive& lit) const {
     return map_.primitives[scene_.instances[lit.instance].mesh][lit.primitive];
   }
@@ -111,21 +78,10 @@ class LightWriter {
   /// Lighting may come from a file: nothing below this indexes out of range.
   Status check(const Lighting& lighting) const {
     for (const LitPrimitive& lit : lighting.primitives) {
-      bool fits = lit.instance < scene_.instances.size() &&
-                  lit.primitive < scene_.meshes[scene_.instances[lit.instance].mesh].primitives.size();
-      if (fits) {
-        const Primitive& primitive = source(lit);
-        const size_t vertices = lit.source_mesh ? primitive.positions.size() : lit.origins.size();
-        fits = lit.irradiance.size() == vertices &&
-               (lit.irradiance_back.empty() || lit.irradiance_back.size() == vertices);
-        for (const VertexOrigin& origin : lit.origins)
-          fits = fits && origin.triangle < primitive.triangle_count();
-        for (const UVec3& face : lit.faces)
-          fits = fits && glm::all(glm::lessThan(face, UVec3(uint32_t(vertices))));
+      for (const std::vector<vec3>* values : {&lit.irradiance, &lit.irradiance_back}) {
+        if (values == &lit.irradiance_back && values->empty()) continue;
+        if (Status status = check_mesh(scene_, lit, values->size()); !status) return status;
       }
-      if (!fits)
-        return bad_input(scene_.file, fmt::format("instance {} primitive {}", lit.instance, lit.primitive),
-                         "the light does not fit the scene", "bake it again");
     }
     return Nothing{};
   }
@@ -162,7 +118,8 @@ class LightWriter {
     group.lit_mesh = document_.json["meshes"].at(group.mesh);
     for (const LitPrimitive* lit : light) {
       Json& primitive = group.lit_mesh["primitives"].at(place(*lit));
-      if (Status status = renew_geometry(primitive, *lit, group.mesh); !status) return status;
+      Status status = geometry_.renew(primitive, *lit, group.mesh, place(*lit), Facing::kFront);
+      if (!status) return status;
       if (mode_ == OutputMode::kUnlit) {
         unlit_.apply(primitive, *lit);
         continue;
@@ -176,76 +133,13 @@ class LightWriter {
     return Nothing{};
   }
 
-  /// Writes the primitive's attributes and indices anew where the mesh was refined or is compressed;
-  /// otherwise the file's own accessors stay. Instances with the same vertices share all that.
-  Status renew_geometry(Json& primitive, const LitPrimitive& lit, uint32_t mesh) {
-    Json& attributes = primitive.at("attributes");
-    for (const char* light : {"_IRRADIANCE", "_IRRADIANCE_BACK"})
-      attributes.erase(light);  // of an earlier bake
-    const bool draco = primitive.contains("extensions") && primitive["extensions"].contains(kDraco);
-    if (lit.source_mesh && !draco) return check_vertex_count(primitive, lit);
-    for (const auto& [example, written] : renewed_[{mesh, place(lit)}])
-      if (same_mesh(*example, lit)) {
-        primitive = written;
-        return Nothing{};
-      }
-    if (Status status = rewrite_attributes(attributes, lit, mesh, -1); !status) return status;
-    if (primitive.contains("targets"))
-      for (size_t t = 0; t < primitive["targets"].size(); ++t) {
-        Status status = rewrite_attributes(primitive["targets"][t], lit, mesh, static_cast<int>(t));
-        if (!status) return status;
-      }
-    rewrite_indices(primitive, lit);
-    drop_extensions(primitive, lit.source_mesh);
-    renewed_[{mesh, place(lit)}].emplace_back(&lit, primitive);
-    return Nothing{};
-  }
-
-  Status check_vertex_count(const Json& primitive, const LitPrimitive& lit) const {
-    const size_t accessor = primitive["attributes"].at("POSITION");
-    const size_t count = document_.json["accessors"].at(accessor).at("count");
-    if (count == lit.irradiance.size()) return Nothing{};
-    return bad_input(scene_.file, fmt::format("accessor {}", accessor),
-                     fmt::format("has {} vertices where {} are lit", count, lit.irradiance.size()),
-                     "if the file has changed since it was read, bake it again");
-  }
-
-  Status rewrite_attributes(Json& attributes, const LitPrimitive& lit, uint32_t mesh, int target) {
-    for (auto& [name, accessor] : attributes.items()) {
-      Result<Elements> elements = read_.attribute(lit, mesh, place(lit), name, target);
-      if (!elements) return elements.error();
-      if (!lit.source_mesh)
-        *elements = refine_elements(*elements, name, target >= 0, source(lit).indices, lit.origins);
-      accessor = append_elements(document_, *elements, name);
-    }
-    return Nothing{};
-  }
-
-  void rewrite_indices(Json& primitive, const LitPrimitive& lit) {
-    std::vector<uint32_t> corners;
-    for (const UVec3& face : lit.faces) corners.insert(corners.end(), {face.x, face.y, face.z});
-    if (lit.source_mesh) corners = source(lit).indices;  // strips expanded, compression undone
-    primitive["indices"] = append_indices(document_, corners, lit.irradiance.size());
-    primitive.erase("mode");  // absent means triangles
-  }
-
-  static void drop_extensions(Json& primitive, bool source_mesh) {
-    if (!primitive.contains("extensions")) return;
-    Json& extensions = primitive["extensions"];
-    extensions.erase(kDraco);
-    if (!source_mesh)
-      for (const char* name : kTiedToMesh) extensions.erase(name);
-    if (extensions.empty()) primitive.erase("extensions");
-  }
-
   GltfDocument& document_;
   const DocumentMap& map_;
   const Scene& scene_;
   OutputMode mode_;
   const SourceReader& read_;
+  GeometryWriter geometry_;
   UnlitMaterials unlit_;
-  /// By file mesh and primitive: what was written for whom, for others with the same vertices.
-  std::map<std::pair<uint32_t, uint32_t>, std::vector<std::pair<const LitPrimitive*, Json>>> renewed_;
 };
 
 }  // namespace

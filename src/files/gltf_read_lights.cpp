@@ -112,7 +112,11 @@ class LightReader {
           fmt::format("light {}: kind \"{}\" is unknown; left out", index, source.type));
       return Nothing{};
     }
-    Light light = convert_light(source, nodes_.world[node]);
+    tinygltf::Light lamp = source;
+    if (source.extras.IsObject())
+      lamp.intensity = static_cast<double>(
+          number_member(source.extras, kBakedIntensity, static_cast<float>(lamp.intensity)));
+    Light light = convert_light(lamp, nodes_.world[node]);
     light.name = source.name.empty() ? model_.nodes[node].name : source.name;
     scene_.lights.push_back(std::move(light));
     return Nothing{};

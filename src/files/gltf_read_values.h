@@ -15,12 +15,15 @@ namespace goldthread {
 /// Whether a file may require this extension without our having to say anything: it is read, or it changes
 /// nothing about diffuse light. Compression is undone before anyone asks.
 inline bool is_known_extension(std::string_view name) {
-  constexpr std::array<std::string_view, 11> kKnown = {
+  constexpr std::array<std::string_view, 12> kKnown = {
       "KHR_mesh_quantization", "KHR_texture_transform",  "KHR_lights_punctual", "KHR_texture_basisu",
       "EXT_lights_ies",        "EXT_lights_image_based", "EXT_texture_webp",    "EXT_mesh_gpu_instancing",
-      "KHR_xmp_json_ld",       "KHR_animation_pointer",  "EXT_lights_area"};
+      "KHR_xmp_json_ld",       "KHR_animation_pointer",  "EXT_lights_area",     "MOZ_lightmap"};
   return name.starts_with("KHR_materials_") || std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
 }
+
+/// In a lamp's extras: the intensity that it had before its light was put on textures and it was turned off.
+constexpr const char* kBakedIntensity = "goldthread_baked_intensity";
 
 /// The extension object `name`, or null.
 inline const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions, const char* name) {

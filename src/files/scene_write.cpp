@@ -9,6 +9,7 @@
 #include "files/file_name.h"
 #include "files/gltf_build.h"
 #include "files/gltf_light.h"
+#include "files/gltf_light_map.h"
 #include "files/gltf_read_container.h"
 #include "files/gltf_source.h"
 #include "files/gltf_write.h"
@@ -24,7 +25,7 @@ bool is_gltf(const std::string& file) {
 /// Attributes as the file has them, by way of tinygltf's model, in which nothing is compressed.
 SourceReader read_from_file(const GltfSource& source, const Scene& scene) {
   SourceReader reader;
-  reader.attribute = [&](const LitPrimitive& lit, uint32_t mesh, uint32_t primitive, const std::string& name,
+  reader.attribute = [&](const LitMesh& lit, uint32_t mesh, uint32_t primitive, const std::string& name,
                          int target) -> Result<Elements> {
     const size_t vertices =
         scene.meshes[scene.instances[lit.instance].mesh].primitives[lit.primitive].positions.size();
@@ -42,7 +43,7 @@ SourceReader read_from_file(const GltfSource& source, const Scene& scene) {
 /// Attributes of a document that was built from the scene itself.
 SourceReader read_from_scene(const Scene& scene) {
   SourceReader reader;
-  reader.attribute = [&](const LitPrimitive& lit, uint32_t, uint32_t, const std::string& name,
+  reader.attribute = [&](const LitMesh& lit, uint32_t, uint32_t, const std::string& name,
                          int) -> Result<Elements> {
     const Primitive& primitive = scene.meshes[scene.instances[lit.instance].mesh].primitives[lit.primitive];
     if (name == "POSITION") return to_elements(std::span<const vec3>(primitive.positions));
@@ -58,22 +59,19 @@ SourceReader read_from_scene(const Scene& scene) {
   return reader;
 }
 
-Status write_into_source(const std::string& file, const Scene& scene, const Lighting& lighting,
-                         const SceneWriteOptions& options) {
-  Result<GltfSource> source = open_source(scene);
-  if (!source) return source.error();
-  const SourceReader reader = read_from_file(*source, scene);
-  if (Status status = add_lighting(source->document, source->map, scene, lighting, options, reader); !status)
-    return status;
-  return write_gltf_document(file, std::move(source->document));
-}
-
-Status write_anew(const std::string& file, const Scene& scene, const Lighting& lighting,
-                  const SceneWriteOptions& options) {
+/// Opens or builds the document, has `add(document, map, read)` put light into it, and writes it.
+template <typename Add>
+Status write_with(const std::string& file, const Scene& scene, const Add& add) {
+  if (is_gltf(scene.file)) {
+    Result<GltfSource> source = open_source(scene);
+    if (!source) return source.error();
+    const SourceReader reader = read_from_file(*source, scene);
+    if (Status status = add(source->document, source->map, reader); !status) return status;
+    return write_gltf_document(file, std::move(source->document));
+  }
   BuiltDocument built = build_document(scene);
   const SourceReader reader = read_from_scene(scene);
-  if (Status status = add_lighting(built.document, built.map, scene, lighting, options, reader); !status)
-    return status;
+  if (Status status = add(built.document, built.map, reader); !status) return status;
   return write_gltf_document(file, std::move(built.document));
 }
 
@@ -93,11 +91,18 @@ Status guarded(const std::string& file, const Scene& scene, const Write& write) 
 
 Status write_lit_scene(const std::string& file, const Scene& scene, const Lighting& lighting,
                        const SceneWriteOptions& options) {
-  const bool from_gltf = is_gltf(scene.file);
-  return guarded(file, scene, [&] {
-    return from_gltf ? write_into_source(file, scene, lighting, options)
-                     : write_anew(file, scene, lighting, options);
-  });
+  const auto add = [&](GltfDocument& document, const DocumentMap& map, const SourceReader& read) {
+    return add_lighting(document, map, scene, lighting, options, read);
+  };
+  return guarded(file, scene, [&] { return write_with(file, scene, add); });
+}
+
+Status write_mapped_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                          std::span<const EncodedPage> encoded) {
+  const auto add = [&](GltfDocument& document, const DocumentMap& map, const SourceReader& read) {
+    return add_light_maps(document, map, scene, atlas, encoded, read);
+  };
+  return guarded(file, scene, [&] { return write_with(file, scene, add); });
 }
 
 Status write_scene(const std::string& file, const Scene& scene) {

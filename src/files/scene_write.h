@@ -1,10 +1,13 @@
 // A lit scene as glTF: the source file with light added, and nothing else changed.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
+#include "files/light_map_encode.h"
 #include "goldthread/bake.h"
 #include "goldthread/error.h"
+#include "scene/light_atlas.h"
 #include "scene/lighting.h"
 #include "scene/scene.h"
 
@@ -21,6 +24,11 @@ struct SceneWriteOptions {
 /// instance whose light differs from another of the same mesh gets a mesh of its own.
 Status write_lit_scene(const std::string& file, const Scene& scene, const Lighting& lighting,
                        const SceneWriteOptions& options);
+
+/// The same with the light on textures, which materials get by MOZ_lightmap (add_light_maps). Punctual lamps,
+/// whose light is in the textures, are written with intensity 0; reading goldthread's files undoes that.
+Status write_mapped_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                          std::span<const EncodedPage> encoded);
 
 /// Writes a scene that came from no glTF file (procedural, OBJ ...), without light.
 Status write_scene(const std::string& file, const Scene& scene);

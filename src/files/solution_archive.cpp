@@ -326,6 +326,19 @@ void fields(A& a, V& v) {
     v.irradiance_back);
 }
 
+template <typename A, Is<MappedMesh> V>
+void fields(A& a, V& v) {
+  a(v.instance, v.primitive, v.back, v.page, v.origins, v.faces, v.face_parents, v.coordinates);
+}
+template <typename A, Is<AtlasPage> V>
+void fields(A& a, V& v) {
+  a(v.irradiance, v.covered);
+}
+template <typename A, Is<LightAtlas> V>
+void fields(A& a, V& v) {
+  a(v.texels_per_metre, v.meshes, v.pages);
+}
+
 bool visit_sky(Packer& a, const Sky& sky) {
   a(store(sky));
   return true;
@@ -423,6 +436,16 @@ bool visit_normal_maps(Unpacker& a, Scene& scene) {
   return true;
 }
 
+bool visit_atlas(Packer& a, const std::optional<LightAtlas>& atlas) {
+  if (atlas) a(*atlas);
+  return true;
+}
+bool visit_atlas(Unpacker& a, std::optional<LightAtlas>& atlas) {
+  a(atlas.emplace());
+  for (MappedMesh& mesh : atlas->meshes) mesh.source_mesh = false;
+  return true;
+}
+
 template <typename A, Is<Solution> V>
 bool visit_section(A& a, V& solution, const std::string& name) {
   auto& scene = solution.scene;
@@ -439,18 +462,19 @@ bool visit_section(A& a, V& solution, const std::string& name) {
   if (name == "normal_maps") return visit_normal_maps(a, scene);
   if (name == "cameras") return a(scene.cameras), true;
   if (name == "lighting") return a(solution.lighting.revision, solution.lighting.primitives), true;
+  if (name == "light_maps") return visit_atlas(a, solution.atlas);
   return false;
 }
 
 }  // namespace
 
 std::vector<std::string> section_names() {
-  return {"report", "scene",   "sky",      "images",   "materials",  "meshes",     "instances",
-          "lights", "cameras", "lighting", "passages", "lamp_sizes", "normal_maps"};
+  return {"report", "scene",   "sky",      "images",   "materials",  "meshes",      "instances",
+          "lights", "cameras", "lighting", "passages", "lamp_sizes", "normal_maps", "light_maps"};
 }
 
 bool is_optional_section(const std::string& name) {
-  return name == "passages" || name == "lamp_sizes" || name == "normal_maps";
+  return name == "passages" || name == "lamp_sizes" || name == "normal_maps" || name == "light_maps";
 }
 
 std::vector<uint8_t> pack_section(const Solution& solution, const std::string& name) {

@@ -60,6 +60,32 @@ std::string check_lit(const LitPrimitive& lit, const Scene& scene) {
   return "";
 }
 
+std::string check_mapped(const MappedMesh& mapped, const Scene& scene, const LightAtlas& atlas) {
+  if (mapped.page >= atlas.pages.size()) return "a page that is not there";
+  LitPrimitive lit;
+  static_cast<LitMesh&>(lit) = mapped;
+  lit.irradiance.resize(mapped.coordinates.size());
+  return check_lit(lit, scene);
+}
+
+std::string check_page(const AtlasPage& page) {
+  const FloatImage& image = page.irradiance;
+  const uint64_t texels = uint64_t{image.width} * image.height;
+  return texels == 0 || image.pixels.size() != texels || page.covered.size() != texels
+             ? "texels for another size"
+             : "";
+}
+
+std::string check_atlas(const LightAtlas& atlas, const Scene& scene) {
+  for (size_t i = 0; i < atlas.meshes.size(); ++i)
+    if (std::string problem = check_mapped(atlas.meshes[i], scene, atlas); !problem.empty())
+      return fmt::format("mapped mesh {} has {}", i, problem);
+  for (size_t i = 0; i < atlas.pages.size(); ++i)
+    if (std::string problem = check_page(atlas.pages[i]); !problem.empty())
+      return fmt::format("light map {} has {}", i, problem);
+  return "";
+}
+
 std::string check_light(const Light& light) {
   if (light.kind > LightKind::kDisc) return "of an unknown kind";
   if (!light.has_area()) return "";
@@ -96,7 +122,7 @@ std::string find_contradiction(const Solution& solution) {
   for (size_t i = 0; i < solution.lighting.primitives.size(); ++i)
     if (std::string problem = check_lit(solution.lighting.primitives[i], scene); !problem.empty())
       return fmt::format("lighting {} has {}", i, problem);
-  return "";
+  return solution.atlas ? check_atlas(*solution.atlas, scene) : "";
 }
 
 }  // namespace goldthread

@@ -14,8 +14,8 @@ struct VertexOrigin {
   vec2 weights{0};
 };
 
-/// The light on one primitive of one instance.
-struct LitPrimitive {
+/// The triangles of one primitive of one instance as they are shown in the end.
+struct LitMesh {
   uint32_t instance = 0;   ///< Scene::instances
   uint32_t primitive = 0;  ///< Mesh::primitives of that instance's mesh
 
@@ -25,7 +25,10 @@ struct LitPrimitive {
   std::vector<VertexOrigin> origins;   ///< per vertex
   std::vector<UVec3> faces;            ///< wound as the source
   std::vector<uint32_t> face_parents;  ///< source triangle of each face
+};
 
+/// The light on one primitive of one instance.
+struct LitPrimitive : LitMesh {
   std::vector<vec3> irradiance;  ///< lux, per vertex, arriving on the front
   std::vector<vec3>
       irradiance_back;  ///< lux, per vertex, on the back; empty unless the material is lit behind

@@ -13,6 +13,7 @@
 #include "files/atomic_file.h"
 #include "files/file_name.h"
 #include "files/image_write.h"
+#include "files/light_map_files.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/solution_file.h"
@@ -21,6 +22,7 @@
 #include "session/buried_lamps.h"
 #include "session/effort.h"
 #include "session/light_setup.h"
+#include "session/mapped_light.h"
 #include "session/reference_points.h"
 #include "session/report.h"
 #include "session/requested_lights.h"
@@ -51,6 +53,7 @@ class Bake {
     if (const Status status = preprocess(); !status) return status.error();
     if (const Status status = solve(); !status) return status.error();
     reconstruct_light();
+    if (const Status status = represent(); !status) return status.error();
     if (const Status status = write(); !status) return status.error();
     result_.cancelled = cancelled_;
     return std::move(result_);
@@ -64,6 +67,7 @@ class Bake {
   Status build_hierarchies(const CancelToken& stop);
   Status solve();
   void reconstruct_light();
+  Status represent();
   Status write();
   Status write_places();
   Status write_one(const std::string& file);
@@ -104,6 +108,7 @@ class Bake {
   std::unique_ptr<RayCaster> caster_;
   std::unique_ptr<HierarchicalSolver> solver_;
   Lighting lighting_;
+  MappedLight mapped_;                // of OutputMode::kLightmap
   std::vector<Receiver> receivers_;   // of options_.points_file
   std::vector<SurfacePlace> places_;  // the same
   std::vector<std::optional<vec3>> light_;
@@ -118,6 +123,7 @@ Status Bake::check_options() const {
                  {},
                  {},
                  fmt::format("choose from {:g}% to {:g}%", 100 * kLeastError, 100 * kMostError)};
+  if (const Status status = check_lightmap(options_.lightmap); !status) return status;
   for (const std::string& file : options_.outputs) {
     const std::string extension = file_extension(file);
     if (extension != ".glb" && extension != ".gltf" && extension != ".gold" && extension != ".png" &&
@@ -305,6 +311,17 @@ void Bake::reconstruct_light() {
   std::erase(report_.warnings, std::string());
 }
 
+Status Bake::represent() {
+  if (options_.mode != OutputMode::kLightmap) return Nothing{};
+  tell("represent", 0.92);
+  const auto begin = Clock::now();
+  Result<MappedLight> mapped = map_light(surfaces_, lighting_, options_.lightmap, report_);
+  if (!mapped) return mapped.error();
+  mapped_ = *std::move(mapped);
+  report_.seconds.represent = since(begin);
+  return Nothing{};
+}
+
 void Bake::finish_report() {
   const SolveStats& stats = solver_->stats();
   report_.solver.elements = solver_->pool().count_by_kind();
@@ -334,6 +351,12 @@ Status Bake::write() {
   for (const std::string& file : options_.outputs) {
     if (const Status status = write_one(file); !status) return status.error();
     result_.written.push_back(file);
+  }
+  if (!options_.lightmap.files.empty() && options_.mode == OutputMode::kLightmap) {
+    Result<std::vector<std::string>> files =
+        write_light_map_files(options_.lightmap.files, scene_, mapped_.atlas);
+    if (!files) return files.error();
+    result_.written.insert(result_.written.end(), files->begin(), files->end());
   }
   report_.seconds.write = since(begin);
   report_.seconds.total = since(start_);
@@ -366,7 +389,9 @@ Status Bake::write_one(const std::string& file) {
     stable.peak_memory_bytes = stable.preprocess_bytes = stable.ray_bvh_bytes = 0;
     stable.solver.ray_time_share = 0;
     stable.threads = 0;
-    return write_solution(file, Solution{stable.json(), scene_, lighting_});
+    std::optional<LightAtlas> atlas;
+    if (options_.mode == OutputMode::kLightmap) atlas = mapped_.atlas;
+    return write_solution(file, Solution{stable.json(), scene_, lighting_, std::move(atlas)});
   }
   if (extension == ".png" || extension == ".exr") {
     PreviewOptions preview;
@@ -378,6 +403,8 @@ Status Bake::write_one(const std::string& file) {
     for (vec3& pixel : picture.pixels) pixel = map(pixel);
     return write_png(file, picture);
   }
+  if (options_.mode == OutputMode::kLightmap)
+    return write_mapped_scene(file, scene_, mapped_.atlas, mapped_.encoded);
   SceneWriteOptions write_options;
   write_options.mode = options_.mode;
   if (options_.mode == OutputMode::kUnlit)

@@ -14,8 +14,10 @@
 #include "files/image_write.h"
 #include "files/solution_file.h"
 #include "math/colour.h"
+#include "scene/light_atlas_lookup.h"
 #include "scene/lighting_lookup.h"
 #include "session/error_measure.h"
+#include "session/mapped_texels.h"
 #include "session/watched.h"
 #include "trace/irradiance_estimate.h"
 #include "trace/lens.h"
@@ -35,10 +37,12 @@ struct Answer {
   Solution solution;
   std::unique_ptr<TracedScene> traced;
   std::unique_ptr<LightingLookup> lookup;
+  std::unique_ptr<LightAtlasLookup> maps;  ///< where light is to be read from these
 
   std::optional<vec3> at(const TracedScene& scene, const Receiver& r) const {
     const TracedTriangle& triangle = scene.triangles()[r.triangle];
     const TracedPart& part = scene.parts()[triangle.part];
+    if (maps) return maps->irradiance(part.instance, part.primitive, triangle.source, r.weights, r.back);
     return lookup->irradiance(part.instance, part.primitive, triangle.source, r.weights, r.back);
   }
 };
@@ -160,6 +164,8 @@ Status Comparison::check_options() {
       return usage("a signed picture is a .png", "end it in .png", options_.picture);
     if (const auto probe = AtomicFile::create(options_.picture); !probe) return probe.error();
   }
+  if ((options_.light_maps || options_.texels) && of_pictures_)
+    return usage("pictures have no light maps", "leave --light-maps and --texels out", options_.first);
   if (options_.seen && of_pictures_)
     return usage("of pictures every pixel is compared", "leave --seen out", options_.first);
   if (!options_.csv_file.empty() && of_pictures_)
@@ -202,6 +208,8 @@ Result<Answer> Comparison::load(const std::string& file) const {
   if (!solution) return solution.error();
   Answer answer;
   answer.solution = *std::move(solution);
+  if ((options_.light_maps || options_.texels) && !answer.solution.atlas)
+    return Error{ErrorCode::kBadInput, "has no light maps", file, {}, "bake it with --output lightmap"};
   return answer;
 }
 
@@ -266,9 +274,11 @@ Result<std::vector<Measured>> Comparison::measure(const Answer& first, const Ans
 Status Comparison::compare_solutions() {
   Result<Answer> first = load(options_.first);
   if (!first) return first.error();
-  const auto prepare = [](Answer& answer) {
+  const auto prepare = [&](Answer& answer) {
     answer.traced = std::make_unique<TracedScene>(answer.solution.scene);
     answer.lookup = std::make_unique<LightingLookup>(answer.solution.scene, answer.solution.lighting);
+    if (options_.light_maps || options_.texels)
+      answer.maps = std::make_unique<LightAtlasLookup>(answer.solution.scene, *answer.solution.atlas);
   };
   prepare(*first);
   std::optional<Answer> second;
@@ -295,6 +305,9 @@ Status Comparison::compare_solutions() {
   std::vector<Receiver> receivers;
   if (options_.seen) {
     receivers = look(*first->traced, options_.picture_width, options_.picture_height).receivers;
+  } else if (options_.texels) {
+    receivers = mapped_texel_receivers(*first->traced, *first->solution.atlas, options_.points,
+                                       static_cast<uint32_t>(options_.seed));
   } else {
     receivers = random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
     for (Receiver& r : receivers) turn_to_shading_normal(*first->traced, r);

@@ -52,6 +52,19 @@ std::string BakeReport::json() const {
                    {"escaped", power.escaped},
                    {"residual", power.residual}};
   j["irradiance_lx"] = {{"least", irradiance.least}, {"most", irradiance.most}};
+  if (atlas)
+    j["atlas"] = {{"pages", atlas->pages},
+                  {"page_size", atlas->page_size},
+                  {"texels_per_metre", atlas->texels_per_metre},
+                  {"charts", atlas->charts},
+                  {"use", atlas->use},
+                  {"covered_texels", atlas->covered_texels},
+                  {"mean_stretch", atlas->mean_stretch},
+                  {"most_stretch", atlas->most_stretch},
+                  {"encoding_error", atlas->encoding_error},
+                  {"clipped_texels", atlas->clipped_texels},
+                  {"triangles", atlas->triangles},
+                  {"vertices", atlas->vertices}};
   j["threads"] = threads;
   j["warnings"] = warnings;
   j["converged"] = converged;

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,15 @@ struct BakeReport {
   struct {
     double least = 0, most = 0;
   } irradiance;  ///< luminance over all vertices that light was worked out for, lx
+  struct Atlas {
+    uint64_t pages = 0, page_size = 0, charts = 0, covered_texels = 0, clipped_texels = 0;
+    double texels_per_metre = 0;
+    double use = 0;                             ///< share of texels that charts touch
+    double mean_stretch = 0, most_stretch = 0;  ///< of charts (Chart::stretch)
+    double encoding_error = 0;                  ///< of eight bits: root mean square over the mean light
+    uint64_t triangles = 0, vertices = 0;       ///< that carry the maps
+  };
+  std::optional<Atlas> atlas;
   int threads = 1;
   std::vector<std::string> warnings;
   bool converged = false;

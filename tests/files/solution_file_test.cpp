@@ -69,6 +69,20 @@ Solution full_solution() {
   lit.irradiance = {vec3(1), vec3(2), vec3(3), vec3(4)};
   lit.irradiance_back = {vec3(5), vec3(6), vec3(7), vec3(8)};
   s.lighting = {3, {lit}};
+  MappedMesh mapped;
+  mapped.source_mesh = false;
+  mapped.back = true;
+  mapped.origins = {{0, vec2(0)}, {0, vec2(1, 0)}, {0, vec2(0, 1)}};
+  mapped.faces = {UVec3(0, 1, 2)};
+  mapped.face_parents = {0};
+  mapped.coordinates = {vec2(0.25f), vec2(0.5f, 0.25f), vec2(0.25f, 0.75f)};
+  AtlasPage page;
+  page.irradiance = {2, 1, {vec3(1), vec3(2)}};
+  page.covered = {1, 0};
+  LightAtlas& atlas = s.atlas.emplace();
+  atlas.meshes.push_back(mapped);
+  atlas.pages.push_back(page);
+  atlas.texels_per_metre = 12.5f;
   return s;
 }
 
@@ -123,6 +137,13 @@ TEST(SolutionFile, ComesBackWhole) {
   EXPECT_EQ(after->lighting.revision, 3u);
   EXPECT_EQ(after->lighting.primitives[0].faces, before.lighting.primitives[0].faces);
   EXPECT_EQ(after->lighting.primitives[0].irradiance_back, before.lighting.primitives[0].irradiance_back);
+
+  ASSERT_TRUE(after->atlas);
+  EXPECT_EQ(after->atlas->texels_per_metre, 12.5f);
+  EXPECT_EQ(after->atlas->pages[0].irradiance.pixels, before.atlas->pages[0].irradiance.pixels);
+  EXPECT_EQ(after->atlas->pages[0].covered, before.atlas->pages[0].covered);
+  EXPECT_EQ(after->atlas->meshes[0].coordinates, before.atlas->meshes[0].coordinates);
+  EXPECT_TRUE(after->atlas->meshes[0].back && !after->atlas->meshes[0].source_mesh);
 
   // What is read and written again is the same to the last byte: nothing that has a place is lost.
   ASSERT_TRUE(write_solution(folder.path("b.gold"), *after));
@@ -222,6 +243,10 @@ TEST(SolutionFile, RefusesContentThatContradictsItself) {
       {"origin", [](Solution& s) { s.lighting.primitives[0].origins[0].triangle = 1; }},
       {"face", [](Solution& s) { s.lighting.primitives[0].faces[0].y = 4; }},
       {"parents", [](Solution& s) { s.lighting.primitives[0].face_parents.pop_back(); }},
+      {"page", [](Solution& s) { s.atlas->meshes[0].page = 1; }},
+      {"another number", [](Solution& s) { s.atlas->meshes[0].coordinates.pop_back(); }},
+      {"face", [](Solution& s) { s.atlas->meshes[0].faces[0].x = 3; }},
+      {"another size", [](Solution& s) { s.atlas->pages[0].covered.pop_back(); }},
   };
   for (const auto& [word, spoil] : cases) {
     Solution solution = full_solution();

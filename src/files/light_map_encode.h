@@ -1,0 +1,22 @@
+// A page of light as eight bits a channel, for viewers.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "scene/light_atlas.h"
+
+namespace goldthread {
+
+struct EncodedPage {
+  std::vector<uint8_t> rgb;  ///< rows from the top; linear: lux = byte / 255 * intensity
+  float intensity = 1;       ///< lux
+  double error = 0;          ///< root mean square that the bytes are wrong by, over covered texels, lux
+  uint64_t clipped = 0;      ///< covered texels of which a channel is brighter than that
+};
+
+/// Chooses the intensity at which clipping what is brighter and rounding the rest show least together: a few
+/// texels next to a lamp do not take the steps from all others. Bytes are rounded by an ordered pattern, up as
+/// often as the fraction says, so that slow gradients show no bands.
+EncodedPage encode_page(const AtlasPage& page);
+
+}  // namespace goldthread

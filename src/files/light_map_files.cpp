@@ -1,0 +1,92 @@
+#include "files/light_map_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "files/atomic_file.h"
+#include "files/file_name.h"
+#include "files/hdr_encode.h"
+#include "files/image_write.h"
+
+namespace goldthread {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Status write_page(const std::string& file, const AtlasPage& page) {
+  if (file_extension(file) == ".hdr") return write_file_atomically(file, encode_hdr(page.irradiance));
+  LayeredImage layered;
+  layered.image = page.irradiance;
+  layered.layers["A"] = {page.covered.begin(), page.covered.end()};
+  return write_layered_exr(file, layered);
+}
+
+Json describe_page(const std::string& file, const AtlasPage& page) {
+  float least = std::numeric_limits<float>::infinity(), most = 0;
+  for (size_t i = 0; i < page.covered.size(); ++i) {
+    if (!page.covered[i]) continue;
+    const vec3& light = page.irradiance.pixels[i];
+    least = std::min({least, light.x, light.y, light.z});
+    most = std::max({most, light.x, light.y, light.z});
+  }
+  return {{"file", fs::path(file).filename().string()},
+          {"width", page.irradiance.width},
+          {"height", page.irradiance.height},
+          {"least", std::min(least, most)},
+          {"most", most}};
+}
+
+Json describe_mesh(const MappedMesh& mesh, const Scene& scene) {
+  vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+  for (const vec2& at : mesh.coordinates) {
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  return {{"instance", mesh.instance},
+          {"name", scene.instances[mesh.instance].name},
+          {"primitive", mesh.primitive},
+          {"side", mesh.back ? "back" : "front"},
+          {"page", mesh.page},
+          {"triangles", mesh.faces.size()},
+          {"box", {low.x, low.y, high.x, high.y}}};
+}
+
+}  // namespace
+
+std::string light_map_page_file(const std::string& file, size_t page) {
+  fs::path path(file);
+  return path.replace_filename(fmt::format("{}-{}{}", path.stem().string(), page, path.extension().string()))
+      .string();
+}
+
+std::string light_map_list_file(const std::string& file) {
+  return fs::path(file).replace_extension(".json").string();
+}
+
+Result<std::vector<std::string>> write_light_map_files(const std::string& file, const Scene& scene,
+                                                       const LightAtlas& atlas) {
+  std::vector<std::string> written;
+  Json list = {{"encoding", file_extension(file) == ".hdr" ? "linear rgbe" : "linear float"},
+               {"unit", "lux"},
+               {"texels_per_metre", atlas.texels_per_metre},
+               {"pages", Json::array()},
+               {"objects", Json::array()}};
+  for (size_t page = 0; page < atlas.pages.size(); ++page) {
+    written.push_back(light_map_page_file(file, page));
+    if (const Status status = write_page(written.back(), atlas.pages[page]); !status) return status.error();
+    list["pages"].push_back(describe_page(written.back(), atlas.pages[page]));
+  }
+  for (const MappedMesh& mesh : atlas.meshes) list["objects"].push_back(describe_mesh(mesh, scene));
+  const std::string text = list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  written.push_back(light_map_list_file(file));
+  const Status status =
+      write_file_atomically(written.back(), {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  if (!status) return status.error();
+  return written;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,121 @@
+#include "session/mapped_light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "files/atomic_file.h"
+#include "files/file_name.h"
+#include "files/light_map_files.h"
+#include "represent/atlas_fill.h"
+#include "represent/atlas_layout.h"
+
+namespace goldthread {
+namespace {
+
+constexpr uint32_t kLeastPage = 4, kMostPage = 16384, kMostPages = 256, kMostPadding = 64;
+
+Error usage(std::string message, std::string cure) {
+  return Error{ErrorCode::kUsage, std::move(message), {}, {}, std::move(cure)};
+}
+
+std::vector<AtlasPart> parts_of(const SurfaceSet& surfaces) {
+  std::vector<AtlasPart> parts;
+  for (const Part& part : surfaces.parts)
+    parts.push_back({part.instance, part.primitive, &surfaces.tree(part), part.scale});
+  return parts;
+}
+
+/// Root mean square error of the bytes over the mean of the light, both over all channels of covered texels.
+double relative_error(const LightAtlas& atlas, const std::vector<EncodedPage>& encoded) {
+  double squares = 0, light = 0, texels = 0;
+  for (size_t p = 0; p < atlas.pages.size(); ++p) {
+    double own = 0;
+    for (size_t i = 0; i < atlas.pages[p].covered.size(); ++i) {
+      if (!atlas.pages[p].covered[i]) continue;
+      const dvec3 value(atlas.pages[p].irradiance.pixels[i]);
+      light += value.x + value.y + value.z;
+      own += 3;
+    }
+    squares += encoded[p].error * encoded[p].error * own;
+    texels += own;
+  }
+  return light > 0 ? std::sqrt(squares / texels) / (light / texels) : 0.0;
+}
+
+BakeReport::Atlas describe(const MappedLight& mapped, const AtlasStats& stats, uint32_t page_size) {
+  BakeReport::Atlas facts;
+  facts.pages = mapped.atlas.pages.size();
+  facts.page_size = page_size;
+  facts.charts = stats.placed;
+  facts.texels_per_metre = static_cast<double>(mapped.atlas.texels_per_metre);
+  facts.use = stats.use;
+  facts.mean_stretch = stats.charts.area > 0 ? stats.charts.sum_of_stretch / stats.charts.area : 0.0;
+  facts.most_stretch = static_cast<double>(stats.charts.most_stretch);
+  for (const AtlasPage& page : mapped.atlas.pages)
+    facts.covered_texels += static_cast<uint64_t>(std::count(page.covered.begin(), page.covered.end(), 1));
+  for (const EncodedPage& page : mapped.encoded) facts.clipped_texels += page.clipped;
+  for (const MappedMesh& mesh : mapped.atlas.meshes) {
+    facts.triangles += mesh.faces.size();
+    facts.vertices += mesh.coordinates.size();
+  }
+  facts.encoding_error = relative_error(mapped.atlas, mapped.encoded);
+  return facts;
+}
+
+}  // namespace
+
+Status check_lightmap(const LightmapOptions& options) {
+  if (options.page_size < kLeastPage || options.page_size > kMostPage)
+    return usage(fmt::format("light maps cannot have {} texels aside", options.page_size),
+                 fmt::format("choose a --page-size from {} to {}", kLeastPage, kMostPage));
+  if (options.pages < 1 || options.pages > kMostPages)
+    return usage(fmt::format("there cannot be {} light maps", options.pages),
+                 fmt::format("choose --pages from 1 to {}", kMostPages));
+  if (options.padding > kMostPadding)
+    return usage(fmt::format("{} texels between charts are too many", options.padding),
+                 fmt::format("choose a --padding from 0 to {}", kMostPadding));
+  if (!(options.texel_density >= 0) || !std::isfinite(options.texel_density))
+    return usage(fmt::format("{:g} texels a metre cannot be had", options.texel_density),
+                 "choose a --texel-density above 0, or leave it out");
+  if (options.files.empty()) return Nothing{};
+  const std::string extension = file_extension(options.files);
+  if (extension != ".exr" && extension != ".hdr")
+    return Error{
+        ErrorCode::kUsage, "light maps are no such files", options.files, {}, "end it in .exr or .hdr"};
+  if (const auto probe = AtomicFile::create(light_map_list_file(options.files)); !probe) return probe.error();
+  return Nothing{};
+}
+
+Result<MappedLight> map_light(const SurfaceSet& surfaces, const Lighting& lighting,
+                              const LightmapOptions& options, BakeReport& report) {
+  AtlasOptions layout;
+  layout.pages.page_size = options.page_size;
+  layout.pages.pages = options.pages;
+  layout.pages.padding = options.padding;
+  layout.pages.texels_per_metre = static_cast<float>(options.texel_density);
+  const CancelToken never;  // who stops a bake wants what light there is, and it needs a place
+  AtlasStats stats;
+  std::optional<LightAtlas> atlas =
+      lay_out_atlas(*surfaces.scene, lighting, parts_of(surfaces), layout, never, stats);
+  if (!atlas)
+    return Error{ErrorCode::kLimit,
+                 fmt::format("{} charts do not fit on {} light map{} of {} texels aside", stats.placed,
+                             options.pages, options.pages == 1 ? "" : "s", options.page_size),
+                 surfaces.scene->file,
+                 {},
+                 "give a larger --page-size, more --pages or less --padding"};
+  if (options.texel_density > 0 &&
+      static_cast<double>(atlas->texels_per_metre) < options.texel_density * 0.999)
+    report.warnings.push_back(
+        fmt::format("{:.4g} texels a metre instead of {:.4g}: more do not fit on the pages",
+                    atlas->texels_per_metre, options.texel_density));
+  MappedLight mapped{*std::move(atlas), {}};
+  fill_atlas(mapped.atlas, *surfaces.scene, lighting, options.page_size, options.padding);
+  for (const AtlasPage& page : mapped.atlas.pages) mapped.encoded.push_back(encode_page(page));
+  report.atlas = describe(mapped, stats, options.page_size);
+  return mapped;
+}
+
+}  // namespace goldthread

@@ -1,0 +1,27 @@
+// A bake's light as textures: laid out, filled and encoded.
+#pragma once
+#include <vector>
+
+#include "element/surface_set.h"
+#include "files/light_map_encode.h"
+#include "goldthread/bake.h"
+#include "goldthread/error.h"
+#include "scene/light_atlas.h"
+#include "session/report.h"
+
+namespace goldthread {
+
+struct MappedLight {
+  LightAtlas atlas;
+  std::vector<EncodedPage> encoded;  ///< one a page
+};
+
+/// A usage Error that names the option which is out of its range.
+Status check_lightmap(const LightmapOptions& options);
+
+/// Puts the light of `lighting`, which is of the scene in `surfaces`, on pages. Fills `report.atlas`, and
+/// adds a warning where the density asked for had to be lowered. An Error where no density fits.
+Result<MappedLight> map_light(const SurfaceSet& surfaces, const Lighting& lighting,
+                              const LightmapOptions& options, BakeReport& report);
+
+}  // namespace goldthread

@@ -315,7 +315,7 @@ Status Bake::represent() {
   if (options_.mode != OutputMode::kLightmap) return Nothing{};
   tell("represent", 0.92);
   const auto begin = Clock::now();
-  Result<MappedLight> mapped = map_light(surfaces_, lighting_, options_.lightmap, report_);
+  Result<MappedLight> mapped = map_light(*solver_, lighting_, options_.lightmap, report_);
   if (!mapped) return mapped.error();
   mapped_ = *std::move(mapped);
   report_.seconds.represent = since(begin);

@@ -8,6 +8,7 @@
 #include "files/atomic_file.h"
 #include "files/file_name.h"
 #include "files/light_map_files.h"
+#include "reconstruct/buried.h"
 #include "represent/atlas_fill.h"
 #include "represent/atlas_layout.h"
 
@@ -25,6 +26,21 @@ std::vector<AtlasPart> parts_of(const SurfaceSet& surfaces) {
   for (const Part& part : surfaces.parts)
     parts.push_back({part.instance, part.primitive, &surfaces.tree(part), part.scale});
   return parts;
+}
+
+/// Whether a place lies inside a solid.
+bool is_hidden(const HierarchicalSolver& solver, const MappedPlace& place) {
+  const Scene& scene = *solver.pool().surfaces().scene;
+  const Instance& instance = scene.instances[place.mesh->instance];
+  const Primitive& source = scene.meshes[instance.mesh].primitives[place.mesh->primitive];
+  const uint32_t* index = &source.indices[3 * size_t{place.mesh->face_parents[place.face]}];
+  const auto corner = [&](int k) { return vec3(instance.transform * vec4(source.positions[index[k]], 1)); };
+  const vec3 a = corner(0), u = corner(1) - a, v = corner(2) - a;
+  const bool mirrored = glm::determinant(mat3(instance.transform)) < 0;
+  const vec3 normal = normalize_or(cross(u, v), vec3(0, 0, 1));
+  RayCount rays;
+  return is_buried(solver.pool(), solver.visibility(), a + place.weights.x * u + place.weights.y * v,
+                   place.mesh->back != mirrored ? -normal : normal, rays);
 }
 
 /// Root mean square error of the bytes over the mean of the light, both over all channels of covered texels.
@@ -88,8 +104,9 @@ Status check_lightmap(const LightmapOptions& options) {
   return Nothing{};
 }
 
-Result<MappedLight> map_light(const SurfaceSet& surfaces, const Lighting& lighting,
+Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& lighting,
                               const LightmapOptions& options, BakeReport& report) {
+  const SurfaceSet& surfaces = solver.pool().surfaces();
   AtlasOptions layout;
   layout.pages.page_size = options.page_size;
   layout.pages.pages = options.pages;
@@ -112,7 +129,9 @@ Result<MappedLight> map_light(const SurfaceSet& surfaces, const Lighting& lighti
         fmt::format("{:.4g} texels a metre instead of {:.4g}: more do not fit on the pages",
                     atlas->texels_per_metre, options.texel_density));
   MappedLight mapped{*std::move(atlas), {}};
-  fill_atlas(mapped.atlas, *surfaces.scene, lighting, options.page_size, options.padding);
+  fill_atlas(mapped.atlas, *surfaces.scene, lighting,
+             {options.page_size, options.padding,
+              [&](const MappedPlace& place) { return is_hidden(solver, place); }});
   for (const AtlasPage& page : mapped.atlas.pages) mapped.encoded.push_back(encode_page(page));
   report.atlas = describe(mapped, stats, options.page_size);
   return mapped;

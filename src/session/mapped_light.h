@@ -2,12 +2,12 @@
 #pragma once
 #include <vector>
 
-#include "element/surface_set.h"
 #include "files/light_map_encode.h"
 #include "goldthread/bake.h"
 #include "goldthread/error.h"
 #include "scene/light_atlas.h"
 #include "session/report.h"
+#include "solve/hierarchical/solver.h"
 
 namespace goldthread {
 
@@ -19,9 +19,9 @@ struct MappedLight {
 /// A usage Error that names the option which is out of its range.
 Status check_lightmap(const LightmapOptions& options);
 
-/// Puts the light of `lighting`, which is of the scene in `surfaces`, on pages. Fills `report.atlas`, and
+/// Puts the light of `lighting`, which is of the solver's scene, on pages. Fills `report.atlas`, and
 /// adds a warning where the density asked for had to be lowered. An Error where no density fits.
-Result<MappedLight> map_light(const SurfaceSet& surfaces, const Lighting& lighting,
+Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& lighting,
                               const LightmapOptions& options, BakeReport& report);
 
 }  // namespace goldthread

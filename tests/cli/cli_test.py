@@ -85,6 +85,11 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "1,2")
         self.assert_fails(2, ["--sky"], "bake", "x.glb", "-o", "y.glb", "--sky", "nan")
         bake = ["bake", "x.glb", "-o", "y.glb"]
+        self.assert_fails(2, ["--page-size", "--output lightmap"], *bake, "--page-size", "512")
+        self.assert_fails(2, ["--map-files", "--output lightmap"], *bake, "--map-files", "maps.exr")
+        self.assert_fails(2, ["--page-size"], *bake, "--output", "lightmap", "--page-size", "3")
+        self.assert_fails(2, ["--padding"], *bake, "--output", "lightmap", "--padding", "many")
+        self.assert_fails(2, [".exr or .hdr"], *bake, "--output", "lightmap", "--map-files", "maps.png")
         for wrong, *options in [["--place", "--place", "1,2"], ["--place", "--place", "1", "--date", "2026-01-02", "--time", "12:00"],
                                 ["--date", "--place", "1,2", "--date", "2026-1", "--time", "12:00"],
                                 ["--time", "--place", "1,2", "--date", "2026-01-02", "--time", "25:00"],
@@ -201,6 +206,21 @@ class CliTest(unittest.TestCase):
         self.assertGreater(json.loads(self.path("r.json").read_text())["power_lm"]["emitted"], 0)
         quiet = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "--quality", "draft", "--quiet")
         self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    def test_bake_light_maps(self):
+        self.run_it("make", "cornell-box")
+        done = self.run_it("bake", "cornell-box.glb", "-o", "lit.glb", "-o", "lit.gold", "--quality", "draft", "--output",
+                           "lightmap", "--page-size", "128", "--map-files", "box.hdr", "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("lit.glb", "lit.gold", "box-0.hdr", "box.json"):
+            self.assertIn(f"wrote {name}", done.stdout)
+        self.assertEqual(self.path("box-0.hdr").read_bytes()[:10], b"#?RADIANCE")
+        self.assertEqual([p["file"] for p in json.loads(self.path("box.json").read_text())["pages"]], ["box-0.hdr"])
+        self.assertGreater(json.loads(self.path("r.json").read_text())["atlas"]["covered_texels"], 128 * 128 // 3)
+        texels = self.run_it("compare", "lit.gold", "--reference", "--texels", "--points", "200", "--samples", "64")
+        self.assertEqual(texels.returncode, 0, texels.stderr)
+        self.assertIn("RMSE", texels.stdout)
+        self.assert_fails(2, ["--light-maps"], "compare", "a.png", "b.png", "--light-maps")
 
     def test_bake_tells_the_light_at_points(self):
         self.run_it("make", "furnace")

@@ -43,7 +43,11 @@ void run(const std::string& name, const Scene& scene, const char* peer) {
   ChartStats stats;
   double begin = cpu_seconds();
   std::vector<std::vector<Chart>> charts;
-  for (const FaceClusterTree& tree : model.trees) charts.push_back(make_charts(tree, {}, never, stats));
+  ChartOptions options;
+  double area = 0;
+  for (const FaceClusterTree& tree : model.trees) area += surface_of(tree);
+  options.most_waste = float(area * kMostWaste);
+  for (const FaceClusterTree& tree : model.trees) charts.push_back(make_charts(tree, options, never, stats));
   const double charting = cpu_seconds() - begin;
   std::vector<PackChart> shapes;
   for (const std::vector<Chart>& own : charts)

@@ -91,11 +91,31 @@ const Primitive& source_of(const Scene& scene, const LitMesh& mesh) {
 
 }  // namespace
 
+double surface_of(const FaceClusterTree& tree) {
+  double sum = 0;
+  for (const ClusterRef root : tree.roots) {
+    if (!is_triangle(root)) {
+      sum += static_cast<double>(tree.nodes[root].area);
+      continue;
+    }
+    const UVec3& corners = tree.mesh.triangles[triangle_of(root)];
+    const auto at = [&](int k) { return tree.mesh.positions[corners[k]]; };
+    sum += static_cast<double>(length(area_vector(at(0), at(1), at(2))));
+  }
+  return sum;
+}
+
 std::optional<LightAtlas> lay_out_atlas(const Scene& scene, const Lighting& lighting,
                                         std::span<const AtlasPart> parts, const AtlasOptions& options,
                                         const CancelToken& cancel, AtlasStats& stats) {
   std::map<std::pair<uint32_t, uint32_t>, const AtlasPart*> part_of;
   for (const AtlasPart& part : parts) part_of[{part.instance, part.primitive}] = &part;
+  double area = 0;
+  for (const LitPrimitive& lit : lighting.primitives)
+    if (const auto part = part_of.find({lit.instance, lit.primitive}); part != part_of.end()) {
+      const auto scale = static_cast<double>(part->second->scale);
+      area += surface_of(*part->second->tree) * scale * scale * (lit.irradiance_back.empty() ? 1 : 2);
+    }
   std::map<const FaceClusterTree*, std::vector<Chart>> charts;
   std::vector<Side> sides;
   std::vector<PackChart> shapes;
@@ -104,7 +124,12 @@ std::optional<LightAtlas> lay_out_atlas(const Scene& scene, const Lighting& ligh
     GOLDTHREAD_CHECK_LT(0u, part_of.count({lit.instance, lit.primitive}));
     const AtlasPart& part = *found->second;
     const auto [known, is_new] = charts.try_emplace(part.tree);
-    if (is_new) known->second = make_charts(*part.tree, options.charts, cancel, stats.charts);
+    if (is_new) {
+      ChartOptions limits = options.charts;
+      limits.most_waste =
+          std::min(limits.most_waste, static_cast<float>(area * kMostWaste) / (part.scale * part.scale));
+      known->second = make_charts(*part.tree, limits, cancel, stats.charts);
+    }
     if (cancel.cancelled()) return std::nullopt;
     for (int back = 0; back < (lit.irradiance_back.empty() ? 1 : 2); ++back) {
       sides.push_back({&lit, &part, &known->second, back == 1, shapes.size()});

@@ -17,6 +17,12 @@ struct AtlasPart {
   float scale = 1;                        ///< metres a unit of the tree's positions
 };
 
+/// The area of a tree's triangles, in its own units.
+double surface_of(const FaceClusterTree& tree);
+
+/// Of all surfaces' area: what a chart may leave free of its box (ChartOptions::most_waste).
+constexpr double kMostWaste = 0.01;
+
 struct AtlasOptions {
   ChartOptions charts;
   PackOptions pages;

@@ -25,7 +25,7 @@ struct Charted {
 
   explicit Charted(const shapes::Soup& soup, float most_stretch = 2)
       : tree(build_face_clusters(soup.weld())) {
-    charts = make_charts(tree, {most_stretch}, kNever, stats);
+    charts = make_charts(tree, {.most_stretch = most_stretch}, kNever, stats);
   }
   dvec3 position(uint32_t triangle, int corner) const {
     return dvec3(tree.mesh.positions[tree.mesh.triangles[triangle][corner]]);
@@ -196,6 +196,34 @@ TEST(Charts, ASpiralRampThatLiesOverItselfIsCut) {
   EXPECT_GE(c.charts.size(), 3u);
   EXPECT_LE(c.charts.size(), 12u);
   EXPECT_GT(c.stats.overlapping, 0u);
+}
+
+TEST(Charts, WhatLeavesTooMuchOfItsBoxFreeIsDivided) {
+  // A thin cross: most of its box is empty.
+  shapes::Soup cross = shapes::flat_grid(9);
+  std::vector<uint32_t> kept;
+  for (size_t i = 0; i < cross.indices.size(); i += 6)
+    if (i / 6 % 9 == 4 || i / 6 / 9 == 4)
+      kept.insert(kept.end(), cross.indices.begin() + std::ptrdiff_t(i),
+                  cross.indices.begin() + std::ptrdiff_t(i + 6));
+  cross.indices = kept;
+  EXPECT_EQ(Charted(cross).charts.size(), 1u);
+  const FaceClusterTree tree = build_face_clusters(cross.weld());
+  ChartStats stats;
+  const std::vector<Chart> charts = make_charts(tree, {2, 0.3f}, kNever, stats);
+  EXPECT_GE(charts.size(), 2u);
+  EXPECT_GT(stats.sprawling, 0u);
+  for (const Chart& chart : charts) {
+    vec2 high(0);
+    double area = 0;
+    for (const vec2& at : chart.coordinates) high = glm::max(high, at);
+    for (const uint32_t t : chart.triangles) {
+      const UVec3& c = tree.mesh.triangles[t];
+      area += double(
+          length(area_vector(tree.mesh.positions[c.x], tree.mesh.positions[c.y], tree.mesh.positions[c.z])));
+    }
+    EXPECT_LE(double(high.x * high.y) - area, 0.3 + 1e-5);
+  }
 }
 
 TEST(Charts, SizeAndPoseDoNotMatter) {

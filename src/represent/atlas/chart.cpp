@@ -12,7 +12,7 @@
 namespace goldthread {
 namespace {
 
-enum class Verdict { kChart, kNotADisc, kFlipped, kOverlapping, kStretched };
+enum class Verdict { kChart, kNotADisc, kFlipped, kOverlapping, kStretched, kSprawling };
 
 /// What became of a cluster, or of a single triangle.
 struct Trial {
@@ -46,9 +46,21 @@ Verdict judge(const Piece& piece, const GridImage& grid, double most_stretch, do
   return boundary_is_simple(piece, grid) ? Verdict::kChart : Verdict::kOverlapping;
 }
 
-Trial try_image(const Piece& piece, const std::optional<PlaneImage>& image, double most_stretch) {
+/// How much of its box a chart leaves free.
+double waste_of(const Piece& piece, const GridImage& grid) {
+  GridPoint high(0);
+  for (const GridPoint& point : grid.points) high = glm::max(high, point);
+  double doubled = 2 * static_cast<double>(high.x) * static_cast<double>(high.y);
+  for (const UVec3& face : piece.faces)
+    doubled -= static_cast<double>(turn(grid.points[face.x], grid.points[face.y], grid.points[face.z]));
+  return doubled / 2 * grid.step * grid.step;
+}
+
+Trial try_image(const Piece& piece, const std::optional<PlaneImage>& image, double most_stretch,
+                double most_waste) {
   if (!image) return {Verdict::kFlipped, {}};
   const GridImage grid = lay_on_grid(*image);
+  if (waste_of(piece, grid) > most_waste) return {Verdict::kSprawling, {}};
   double stretch = 0;
   const Verdict verdict = judge(piece, grid, most_stretch, stretch);
   if (verdict != Verdict::kChart) return {verdict, {}};
@@ -70,12 +82,13 @@ Trial try_cluster(const FaceClusterTree& tree, std::span<const uint32_t> twins, 
   if (facing < kHopeless) return {Verdict::kStretched, {}};
   const Piece piece = cut_piece(tree.mesh, twins, cluster.first, cluster.count);
   if (!piece.is_disc_with_holes()) return {Verdict::kNotADisc, {}};
-  const auto most = static_cast<double>(options.most_stretch);
+  const auto most = static_cast<double>(options.most_stretch),
+             waste = static_cast<double>(options.most_waste);
   if (facing >= kNearlyFlat) {
-    Trial trial = try_image(piece, project(piece), std::min(most, kGoodEnough));
-    if (trial.verdict == Verdict::kChart) return trial;
+    Trial trial = try_image(piece, project(piece), std::min(most, kGoodEnough), waste);
+    if (trial.verdict == Verdict::kChart || trial.verdict == Verdict::kSprawling) return trial;
   }
-  return try_image(piece, map_conformally(piece), most);
+  return try_image(piece, map_conformally(piece), most, waste);
 }
 
 void count(const Trial& trial, const FaceClusterTree& tree, ChartStats& stats) {
@@ -84,6 +97,7 @@ void count(const Trial& trial, const FaceClusterTree& tree, ChartStats& stats) {
   stats.flipped += trial.verdict == Verdict::kFlipped;
   stats.overlapping += trial.verdict == Verdict::kOverlapping;
   stats.stretched += trial.verdict == Verdict::kStretched;
+  stats.sprawling += trial.verdict == Verdict::kSprawling;
   if (trial.verdict != Verdict::kChart) return;
   double area = 0;
   for (const uint32_t t : trial.chart.triangles) {

@@ -1,6 +1,7 @@
 // Charts: pieces of a mesh that lie flat in a plane (thesis 5.2), along its face clusters.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/progress.h"
@@ -23,12 +24,16 @@ struct Chart {
 struct ChartOptions {
   /// A chart that is stretched more, or pressed more, is divided into its clusters' children.
   float most_stretch = 2;
+  /// So is one that leaves more of its box free, in the mesh's units of area: large frames and stars keep
+  /// others from their places, and pages are filled better with their parts.
+  float most_waste = std::numeric_limits<float>::infinity();
 };
 
 /// What making charts came to, over all charts of all calls that it was passed to.
 struct ChartStats {
   uint64_t charts = 0, tried = 0;
-  uint64_t flipped = 0, overlapping = 0, stretched = 0, not_discs = 0;  ///< why those tried were divided
+  uint64_t flipped = 0, overlapping = 0, stretched = 0, not_discs = 0,
+           sprawling = 0;               ///< why those tried were divided
   double area = 0, sum_of_stretch = 0;  ///< of charts, the latter weighed by area
   float most_stretch = 0;
 };

@@ -34,7 +34,7 @@ struct OpenPage {
 struct Candidate {
   uint32_t page = 0, turns = 0;
   PagePlace place;
-  uint32_t top = 0;  ///< the row above it
+  uint32_t middle = 0;  ///< twice the row of its middle
 };
 
 /// One try at one density.
@@ -78,19 +78,19 @@ class Attempt {
     return touched <= uint64_t{options_.page_size} * options_.page_size * options_.pages;
   }
 
-  /// Longest side first, then the larger.
+  /// Longest outline first: what is long is as hard to place as what is large.
   std::vector<uint32_t> by_size() const {
     std::vector<uint32_t> order(charts_.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](uint32_t i) {
       const Mask& mask = masks_[i].touched;
-      return std::pair(std::max(mask.width(), mask.height()), std::min(mask.width(), mask.height()));
+      return std::pair(mask.width() + mask.height(), std::max(mask.width(), mask.height()));
     };
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) > key(b); });
     return order;
   }
 
-  /// Of the four turns the one that lies lowest on the first page that has room.
+  /// Of the four turns the one whose middle lies lowest on the first page that has room.
   bool put(uint32_t chart, Placement& placement) {
     std::array<Mask, 4> touched, blocked;
     const uint32_t turns = masks_[chart].touched.width() == 1 && masks_[chart].touched.height() == 1 ? 1 : 4;
@@ -108,9 +108,9 @@ class Attempt {
         // Nothing of this class fits here any more.
         if (!place) pages_[p].begin[size_class(blocked[t])] = {options_.page_size + 2 * options_.padding, 0};
         if (!place) continue;
-        const uint32_t top = place->y + touched[t].height();
-        if (!best || std::pair(top, place->x) < std::pair(best->top, best->place.x))
-          best = {p, t, *place, top};
+        const uint32_t middle = 2 * place->y + touched[t].height();
+        if (!best || std::pair(middle, place->x) < std::pair(best->middle, best->place.x))
+          best = {p, t, *place, middle};
       }
       if (!best) continue;
       pages_[p].begin[size_class(blocked[best->turns])] = best->place;

@@ -28,9 +28,7 @@ class Page {
   uint64_t taken() const { return taken_; }
 
  private:
-  bool may_hold(const Mask& blocked, const std::vector<uint32_t>& widest, uint32_t y) const;
-
-  uint32_t size_, padding_;
+  uint32_t padding_;
   Mask texels_;                        ///< with a margin of the padding round the page
   std::vector<uint32_t> longest_gap_;  ///< of each of its rows
   uint64_t taken_ = 0;

@@ -46,8 +46,8 @@ TEST(LightMapEncode, OneBrightTexelDoesNotTakeTheStepsFromAllOthers) {
   EXPECT_LE(encoded.intensity, 1.5f);
   for (size_t i = 0; i < 3 * size_t{256} * 256; ++i)
     if (i / 3 != 9 * 256 + 9) {
-      EXPECT_NEAR(encoded.rgb[i] / 255.0 * double(encoded.intensity),
-                  double(page.irradiance.pixels[i / 3].x), 0.02);
+      EXPECT_NEAR(encoded.rgb[i] / 255.0 * double(encoded.intensity), double(page.irradiance.pixels[i / 3].x),
+                  0.02);
     }
 }
 

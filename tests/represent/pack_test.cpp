@@ -169,9 +169,8 @@ TEST(Pack, SquaresThatJustFitFillThePage) {
   EXPECT_EQ(packing->pages, 1u);
 }
 
-TEST(Pack, LongBoxesAreTurnedToFit) {
-  // Three of 3 by 1 upright and one across: as they come, side by side, they would not fit.
-  const std::vector<Shape> shapes = {box(3, 1), box(1, 3), box(3, 1), box(1, 3)};
+/// On a page of 64 texels without padding at the density asked for, 15.9 texels a unit.
+void expect_fit(const std::vector<Shape>& shapes) {
   PackOptions options;
   options.page_size = 64;
   options.padding = 0;
@@ -182,19 +181,16 @@ TEST(Pack, LongBoxesAreTurnedToFit) {
   expect_apart(charts_of(shapes), *packing, options);
 }
 
+TEST(Pack, LongBoxesAreTurnedToFit) {
+  // Round the middle, each begins where another ends: as they come, side by side, they would not fit.
+  expect_fit({box(3, 1), box(1, 3), box(3, 1), box(1, 3)});
+}
+
 TEST(Pack, AnAngleHoldsABox) {
   Shape angle;
   angle.quad(vec2(0), vec2(4, 1));
   angle.quad(vec2(0), vec2(1, 4));
-  const std::vector<Shape> shapes = {angle, box(2.9f, 2.9f)};
-  PackOptions options;
-  options.page_size = 64;
-  options.padding = 0;
-  options.texels_per_metre = 15.9f;
-  const std::optional<Packing> packing = pack(charts_of(shapes), options, kNever);
-  ASSERT_TRUE(packing);
-  EXPECT_EQ(packing->texels_per_metre, 15.9f);
-  expect_apart(charts_of(shapes), *packing, options);
+  expect_fit({angle, box(2.9f, 2.9f)});
 }
 
 TEST(Pack, DensityIsNeverMoreThanAskedAndFollowsThePage) {
@@ -253,6 +249,18 @@ TEST(Pack, WhatCannotFitIsRefused) {
   PackOptions options;
   options.page_size = 4;
   EXPECT_FALSE(pack(charts_of(shapes), options, kNever));
+}
+
+TEST(Pack, AsManyPointsAsThereIsRoomForFit) {
+  // Charts far below a texel: on 10 texels with padding 2, four by four of them. One more cannot be.
+  PackOptions options;
+  options.page_size = 10;
+  options.texels_per_metre = 0.01f;
+  const std::vector<Shape> full(16, box(1, 1)), more(17, box(1, 1));
+  const std::optional<Packing> packing = pack(charts_of(full), options, kNever);
+  ASSERT_TRUE(packing);
+  expect_apart(charts_of(full), *packing, options);
+  EXPECT_FALSE(pack(charts_of(more), options, kNever));
 }
 
 TEST(Pack, NothingNeedsNoPage) {

@@ -4,8 +4,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <unordered_map>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -28,7 +28,7 @@ uint32_t size_class(const Mask& blocked) {
 /// A page with, by class, where the last chart of it came to lie: the search for the next begins there.
 struct OpenPage {
   Page page;
-  std::map<uint32_t, PagePlace> begin;
+  std::unordered_map<uint32_t, PagePlace> begin;
 };
 
 struct Candidate {
@@ -102,18 +102,16 @@ class Attempt {
       if (p == pages_.size()) pages_.push_back({Page(options_.page_size, options_.padding), {}});
       std::optional<Candidate> best;
       for (uint32_t t = 0; t < turns; ++t) {
-        const auto known = pages_[p].begin.find(size_class(blocked[t]));
-        const PagePlace from = known == pages_[p].begin.end() ? PagePlace{} : known->second;
-        const std::optional<PagePlace> place = pages_[p].page.find(blocked[t], from);
-        // Nothing of this class fits here any more.
-        if (!place) pages_[p].begin[size_class(blocked[t])] = {options_.page_size + 2 * options_.padding, 0};
+        PagePlace& begin = pages_[p].begin[size_class(blocked[t])];
+        const std::optional<PagePlace> place = pages_[p].page.find(blocked[t], begin);
+        // Nothing of this class fits before that, or at all.
+        begin = place.value_or(PagePlace{options_.page_size + 2 * options_.padding, 0});
         if (!place) continue;
         const uint32_t middle = 2 * place->y + touched[t].height();
         if (!best || std::pair(middle, place->x) < std::pair(best->middle, best->place.x))
           best = {p, t, *place, middle};
       }
       if (!best) continue;
-      pages_[p].begin[size_class(blocked[best->turns])] = best->place;
       pages_[p].page.take(touched[best->turns], best->place);
       placement = placement_of(chart, *best, touched[0]);
       return true;
@@ -173,6 +171,13 @@ float least_density(std::span<const PackChart> charts) {
   return static_cast<float>(0.25 / std::max(longest, 1e-30));
 }
 
+/// Whether the charts' mere number is too much. Each touches a texel, and with the padding's texels to the
+/// right of it and above, which no other has, that is a square of its own on a page larger by the padding.
+bool too_many(size_t charts, const PackOptions& options) {
+  const uint64_t across = (uint64_t{options.page_size} + options.padding) / (uint64_t{options.padding} + 1);
+  return charts > across * across * options.pages;
+}
+
 constexpr float kCloseEnough = 1.01f;  // a hundredth of the density is not worth another try
 
 }  // namespace
@@ -188,6 +193,7 @@ std::optional<Packing> pack(std::span<const PackChart> charts, const PackOptions
   GOLDTHREAD_CHECK_LT(0u, options.page_size);
   GOLDTHREAD_CHECK_LT(0u, options.pages);
   if (charts.empty()) return Packing{};
+  if (too_many(charts.size(), options)) return std::nullopt;
   const auto attempt = [&](float density) { return Attempt(charts, options, density).run(cancel); };
   // An attempt that cannot succeed ends when its texels are counted, so the wish itself comes first.
   if (options.texels_per_metre > 0)

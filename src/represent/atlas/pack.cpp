@@ -178,7 +178,7 @@ bool too_many(size_t charts, const PackOptions& options) {
   return charts > across * across * options.pages;
 }
 
-constexpr float kCloseEnough = 1.01f;  // a hundredth of the density is not worth another try
+constexpr float kCloseEnough = 1.005f;  // finer than that, another try is not worth its time
 
 }  // namespace
 

@@ -1,10 +1,7 @@
 #include "files/light_map_encode.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "base/parallel.h"
 
 namespace goldthread {
 namespace {
@@ -39,10 +36,33 @@ float best_white(const std::vector<float>& values) {
   return white;
 }
 
-/// Bayer's 4 by 4 pattern: thresholds that neighbouring texels share no two of.
-float threshold(uint32_t x, uint32_t y) {
-  constexpr std::array<uint8_t, 16> kOrder = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  return (static_cast<float>(kOrder[4 * (y % 4) + x % 4]) + 0.5f) / 16;
+/// One channel as bytes, in steps of white / 255, by error diffusion (Floyd and Steinberg 1976), every other
+/// row from right to left: what rounding takes from a texel its neighbours get, so that means over a few
+/// texels are right and no pattern shows. NaN and what is below 0 become 0.
+void diffuse(const FloatImage& page, int channel, float white, std::vector<uint8_t>& rgb) {
+  const auto width = static_cast<int64_t>(page.width);
+  // Of this row and the next, with a texel more on either side.
+  std::vector<float> owed(page.width + 2, 0.0f), next(page.width + 2, 0.0f);
+  for (uint32_t y = 0; y < page.height; ++y) {
+    const int64_t along = y % 2 == 0 ? 1 : -1;
+    for (int64_t i = 0, x = along > 0 ? 0 : width - 1; i < width; ++i, x += along) {
+      const size_t texel = size_t{y} * page.width + static_cast<size_t>(x);
+      const float share = page.pixels[texel][channel] / white;
+      const float exact = share > 0 ? std::min(share, 1.0f) * 255 : 0.0f;
+      const auto at = static_cast<size_t>(x + 1);
+      const float wanted = exact + owed[at];
+      const float shown = std::clamp(std::round(wanted), 0.0f, 255.0f);
+      rgb[3 * texel + static_cast<size_t>(channel)] = static_cast<uint8_t>(shown);
+      // What is black or white stays so: nothing can be owed to it or by it.
+      const float error = exact > 0 && exact < 255 ? std::clamp(wanted - shown, -0.5f, 0.5f) : 0.0f;
+      owed[static_cast<size_t>(x + 1 + along)] += error * 7 / 16;
+      next[static_cast<size_t>(x + 1 - along)] += error * 3 / 16;
+      next[at] += error * 5 / 16;
+      next[static_cast<size_t>(x + 1 + along)] += error / 16;
+    }
+    owed.swap(next);
+    std::fill(next.begin(), next.end(), 0.0f);
+  }
 }
 
 }  // namespace
@@ -57,19 +77,7 @@ EncodedPage encode_page(const AtlasPage& page) {
   EncodedPage encoded;
   encoded.intensity = best_white(values);
   encoded.rgb.resize(pixels.size() * 3);
-  parallel_for(page.irradiance.height, [&](size_t row) {
-    for (size_t x = 0; x < page.irradiance.width; ++x) {
-      const size_t i = row * page.irradiance.width + x;
-      const float up = threshold(static_cast<uint32_t>(x), static_cast<uint32_t>(row));
-      for (int c = 0; c < 3; ++c) {
-        const float share = pixels[i][c] / encoded.intensity;  // NaN and less than 0 become 0
-        const float steps = share > 0 ? std::min(share, 1.0f) * 255 : 0.0f;
-        const float whole = std::floor(steps);
-        encoded.rgb[3 * i + static_cast<size_t>(c)] =
-            static_cast<uint8_t>(whole + (steps - whole > up ? 1.0f : 0.0f));
-      }
-    }
-  });
+  for (int c = 0; c < 3; ++c) diffuse(page.irradiance, c, encoded.intensity, encoded.rgb);
   double squares = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
     if (!page.covered[i]) continue;

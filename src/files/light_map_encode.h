@@ -15,8 +15,8 @@ struct EncodedPage {
 };
 
 /// Chooses the intensity at which clipping what is brighter and rounding the rest show least together: a few
-/// texels next to a lamp do not take the steps from all others. Bytes are rounded by an ordered pattern, up
-/// as often as the fraction says, so that slow gradients show no bands.
+/// texels next to a lamp do not take the steps from all others. What rounding takes from a texel its
+/// neighbours get, so that slow gradients show no bands.
 EncodedPage encode_page(const AtlasPage& page);
 
 }  // namespace goldthread

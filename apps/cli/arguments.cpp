@@ -54,7 +54,8 @@ const std::vector<std::pair<std::string, Quality>> kQualities = {{"draft", Quali
 const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
     {"vertex-light", OutputMode::kVertexLight},
     {"unlit", OutputMode::kUnlit},
-    {"lightmap", OutputMode::kLightmap}};
+    {"lightmap", OutputMode::kLightmap},
+    {"baked", OutputMode::kBaked}};
 
 constexpr const char* kSceneFormats = "glTF, GLB, OBJ, PLY, STL, FBX or Collada";
 
@@ -159,7 +160,7 @@ void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
       ->type_name("FILE")
       ->group(kResults);
   verb.add_option("--output", texts.mode,
-                  "how the scene carries light: vertex-light, unlit or lightmap (vertex-light)")
+                  "how the scene carries light: vertex-light, unlit, lightmap or baked (vertex-light)")
       ->type_name("MODE")
       ->check(CLI::IsMember(names_of(kOutputModes)).description(""))
       ->group(kResults);
@@ -170,7 +171,7 @@ constexpr const char* kLightmapNames[] = {"--page-size", "--pages", "--padding",
                                           "--map-files"};
 
 void add_lightmap(CLI::App& verb, LightmapOptions& options) {
-  const auto group = "Light maps (--output lightmap)";
+  const auto group = "Light maps (--output lightmap or baked)";
   verb.add_option("--page-size", options.page_size, "texels aside (1024)")->type_name("N")->group(group);
   verb.add_option("--pages", options.pages, "how many pages at most (1)")->type_name("N")->group(group);
   verb.add_option("--padding", options.padding, "free texels between charts (2)")
@@ -291,11 +292,11 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.error) return usage_error("--error: '" + texts.error + "' is no share", "write 0.02 or 2%");
   }
   options.mode = value_of(kOutputModes, texts.mode);
-  if (options.mode != OutputMode::kLightmap)
+  if (options.mode != OutputMode::kLightmap && options.mode != OutputMode::kBaked)
     for (const char* name : kLightmapNames)
       if (verb.count(name) > 0)
         return usage_error(fmt::format("{} is about light maps, and none are asked for", name),
-                           "add --output lightmap");
+                           "add --output lightmap or --output baked");
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--max-memory") > 0) {
     options.max_memory = parse_bytes(texts.memory);

@@ -19,9 +19,10 @@ enum class OutputMode {
   kVertexLight,  ///< float attribute _IRRADIANCE (lux) beside untouched materials; _IRRADIANCE_BACK on
                  ///< two-sided ones
   kLightmap,     ///< textures under MOZ_lightmap beside materials that are else as they were
+  kBaked,        ///< colour and light in one texture, KHR_materials_unlit: any viewer shows it
 };
 
-/// How light maps are laid out, for kLightmap.
+/// How light maps are laid out, for kLightmap and kBaked.
 struct LightmapOptions {
   uint32_t page_size = 1024;  ///< texels aside, 4 to 16384
   uint32_t pages = 1;         ///< at most, 1 to 256
@@ -65,7 +66,7 @@ struct BakeOptions : LightOptions {
 
 /// Where a bake is. Sent at least once a second while it runs.
 struct BakeEvent {
-  std::string stage;  ///< "load", "preprocess", "solve", "reconstruct", "write"
+  std::string stage;  ///< "load", "preprocess", "solve", "reconstruct", "represent", "write"
   double share = 0;   ///< of the whole run done, 0..1, an estimate
   double rays_per_second = 0;
   double error_estimate = 0;  ///< of the links together, as a share of the light: `link_error` of the report

@@ -8,12 +8,14 @@
 
 #include "files/gltf_light_nodes.h"
 #include "files/gltf_read_values.h"
+#include "files/gltf_unlit.h"
 #include "files/png_encode.h"
 
 namespace goldthread {
 namespace {
 
 constexpr const char* kLightMap = "MOZ_lightmap";
+constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kVariants = "KHR_materials_variants";
 constexpr int64_t kNoMaterial = -1;
 
@@ -23,15 +25,22 @@ struct PageTexture {
   float intensity = 1;
 };
 
+/// What textures hold: light alone, or what the eye sees. One of the two is empty.
+struct Textures {
+  std::span<const EncodedPage> light;
+  std::span<const BakedPage> baked;
+};
+
 class LightMapWriter {
  public:
   LightMapWriter(GltfDocument& document, const DocumentMap& map, const Scene& scene, const LightAtlas& atlas,
-                 std::span<const EncodedPage> encoded, const SourceReader& read)
+                 const Textures& textures, const SourceReader& read)
       : document_(document),
         map_(map),
         scene_(scene),
         atlas_(atlas),
-        encoded_(encoded),
+        textures_(textures),
+        shows_all_(!textures.baked.empty()),
         read_(read),
         geometry_(document, scene, read) {}
 
@@ -49,9 +58,9 @@ class LightMapWriter {
       if (Status status = map_mesh(groups.back(), meshes); !status) return status;
     }
     if (Status status = assign_meshes(document_, map_, groups, read_, scene_.file); !status) return status;
-    if (!groups.empty()) use_extension(document_, kLightMap);
+    if (!groups.empty()) use_extension(document_, shows_all_ ? kUnlit : kLightMap);
     geometry_.drop_unused_extensions();
-    turn_lamps_off();
+    if (!shows_all_) turn_lamps_off();
     return Nothing{};
   }
 
@@ -66,21 +75,25 @@ class LightMapWriter {
         append_to(document_, "samplers",
                   {{"magFilter", linear}, {"minFilter", mipmapped}, {"wrapS", clamp}, {"wrapT", clamp}});
     for (size_t p = 0; p < atlas_.pages.size(); ++p) {
-      const FloatImage& image = atlas_.pages[p].irradiance;
-      const std::vector<uint8_t> png =
-          encode_png(image.width, image.height, 3, encoded_[p].rgb, PngContent::kData);
+      const std::vector<uint8_t> png = picture_of(p);
       if (png.empty())
         return Error{ErrorCode::kCannotWrite, "a page of the light map is larger than PNG holds", scene_.file,
                      "", "give a smaller --page-size"};
-      const std::string name = fmt::format("light map {}", p);
+      const std::string name = fmt::format("{} {}", shows_all_ ? "baked" : "light map", p);
       const uint32_t view = append_view(document_, png);
       const uint32_t source =
           append_to(document_, "images", {{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}});
       pages_.push_back(
           {append_to(document_, "textures", {{"name", name}, {"sampler", sampler}, {"source", source}}),
-           encoded_[p].intensity});
+           shows_all_ ? 1.0f : textures_.light[p].intensity});
     }
     return Nothing{};
+  }
+
+  std::vector<uint8_t> picture_of(size_t page) const {
+    const FloatImage& image = atlas_.pages[page].irradiance;
+    if (shows_all_) return encode_png(image.width, image.height, 4, textures_.baked[page].rgba);
+    return encode_png(image.width, image.height, 3, textures_.light[page].rgb, PngContent::kData);
   }
 
   Status map_mesh(LitGroup& group, const std::vector<const MappedMesh*>& meshes) {
@@ -145,10 +158,25 @@ class LightMapWriter {
     Json material = Json::object();
     if (source != kNoMaterial) material = document_.json.at("materials").at(static_cast<size_t>(source));
     if (two_sided) material.erase("doubleSided");  // front and back are triangles of their own now
-    material["extensions"][kLightMap] = {
-        {"index", pages_[page].texture}, {"texCoord", set}, {"intensity", shortest(pages_[page].intensity)}};
+    if (shows_all_)
+      show_page(material, page, set);
+    else
+      material["extensions"][kLightMap] = {{"index", pages_[page].texture},
+                                           {"texCoord", set},
+                                           {"intensity", shortest(pages_[page].intensity)}};
     known->second = append_to(document_, "materials", std::move(material));
     return known->second;
+  }
+
+  /// The factor's alpha is on the page.
+  void show_page(Json& material, uint32_t page, uint32_t set) {
+    drop_shading(material);
+    if (material.contains("extensions")) material["extensions"].erase(kLightMap);
+    material["pbrMetallicRoughness"] = {
+        {"baseColorTexture", {{"index", pages_[page].texture}, {"texCoord", set}}},
+        {"metallicFactor", 0.0},
+        {"roughnessFactor", 1.0}};
+    material["extensions"][kUnlit] = Json::object();
   }
 
   /// Their light is on the pages: a viewer would light the scene twice.
@@ -168,7 +196,8 @@ class LightMapWriter {
   const DocumentMap& map_;
   const Scene& scene_;
   const LightAtlas& atlas_;
-  std::span<const EncodedPage> encoded_;
+  Textures textures_;
+  bool shows_all_;
   const SourceReader& read_;
   GeometryWriter geometry_;
   std::vector<PageTexture> pages_;
@@ -180,7 +209,12 @@ class LightMapWriter {
 Status add_light_maps(GltfDocument& document, const DocumentMap& map, const Scene& scene,
                       const LightAtlas& atlas, std::span<const EncodedPage> encoded,
                       const SourceReader& read) {
-  return LightMapWriter(document, map, scene, atlas, encoded, read).add();
+  return LightMapWriter(document, map, scene, atlas, {encoded, {}}, read).add();
+}
+
+Status add_baked_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
+                       const LightAtlas& atlas, std::span<const BakedPage> baked, const SourceReader& read) {
+  return LightMapWriter(document, map, scene, atlas, {{}, baked}, read).add();
 }
 
 }  // namespace goldthread

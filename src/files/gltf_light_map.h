@@ -22,4 +22,9 @@ Status add_light_maps(GltfDocument& document, const DocumentMap& map, const Scen
                       const LightAtlas& atlas, std::span<const EncodedPage> encoded,
                       const SourceReader& read);
 
+/// The same with unlit materials whose base colour is the page, of which `baked` has one each: sRGB PNG, with
+/// alpha where a material needs it. Lamps stay, for such materials do not see them.
+Status add_baked_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
+                       const LightAtlas& atlas, std::span<const BakedPage> baked, const SourceReader& read);
+
 }  // namespace goldthread

@@ -34,18 +34,6 @@ double source_alpha(const Json& material) {
   return surface.contains("baseColorFactor") ? surface["baseColorFactor"].at(3).get<double>() : 1.0;
 }
 
-/// What no unlit material has, or what would light it twice. Other extensions and extras stay.
-void drop_shading(Json& material) {
-  for (const char* key :
-       {"pbrMetallicRoughness", "normalTexture", "occlusionTexture", "emissiveTexture", "emissiveFactor"})
-    material.erase(key);
-  if (!material.contains("extensions")) return;
-  Json kept = Json::object();
-  for (const auto& [name, value] : material["extensions"].items())
-    if (!name.starts_with("KHR_materials_")) kept[name] = value;
-  material["extensions"] = std::move(kept);
-}
-
 /// A final vertex's place in its source primitive, ready to interpolate the importer's attributes.
 class VertexLookup {
  public:
@@ -77,6 +65,17 @@ vec3 brighter_side(const LitPrimitive& lit, size_t vertex) {
 }
 
 }  // namespace
+
+void drop_shading(Json& material) {
+  for (const char* key :
+       {"pbrMetallicRoughness", "normalTexture", "occlusionTexture", "emissiveTexture", "emissiveFactor"})
+    material.erase(key);
+  if (!material.contains("extensions")) return;
+  Json kept = Json::object();
+  for (const auto& [name, value] : material["extensions"].items())
+    if (!name.starts_with("KHR_materials_")) kept[name] = value;
+  material["extensions"] = std::move(kept);
+}
 
 const vec3& UnlitMaterials::average(int32_t image_index) {
   const auto [known, is_new] = averages_.try_emplace(image_index, vec3(1));

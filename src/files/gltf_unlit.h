@@ -10,6 +10,10 @@
 
 namespace goldthread {
 
+/// Takes off a material (JSON) what no unlit one has, or what would light it twice. Other extensions and
+/// extras stay.
+void drop_shading(Json& material);
+
 /// One document's unlit materials. Each material in use is copied once; the originals stay.
 class UnlitMaterials {
  public:

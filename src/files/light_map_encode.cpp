@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+#include "math/colour.h"
+
 namespace goldthread {
 namespace {
 
@@ -66,6 +69,22 @@ void diffuse(const FloatImage& page, int channel, float white, std::vector<uint8
 }
 
 }  // namespace
+
+BakedPage encode_baked_page(const FloatImage& nits, const std::vector<float>& alpha, float exposure) {
+  BakedPage page;
+  page.rgba.resize(nits.pixels.size() * 4);
+  parallel_for(
+      nits.pixels.size(),
+      [&](size_t i) {
+        for (int c = 0; c < 4; ++c) {
+          const float value = c < 3 ? linear_to_srgb(exposure * nits.pixels[i][c]) : alpha[i];
+          page.rgba[4 * i + static_cast<size_t>(c)] =
+              value > 0 ? static_cast<uint8_t>(std::lround(255 * std::min(value, 1.0f))) : uint8_t{0};
+        }
+      },
+      4096);
+  return page;
+}
 
 EncodedPage encode_page(const AtlasPage& page) {
   const std::vector<vec3>& pixels = page.irradiance.pixels;

@@ -105,6 +105,14 @@ Status write_mapped_scene(const std::string& file, const Scene& scene, const Lig
   return guarded(file, scene, [&] { return write_with(file, scene, add); });
 }
 
+Status write_baked_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                         std::span<const BakedPage> pages) {
+  const auto add = [&](GltfDocument& document, const DocumentMap& map, const SourceReader& read) {
+    return add_baked_pages(document, map, scene, atlas, pages, read);
+  };
+  return guarded(file, scene, [&] { return write_with(file, scene, add); });
+}
+
 Status write_scene(const std::string& file, const Scene& scene) {
   return guarded(file, scene, [&] { return write_gltf_document(file, build_document(scene).document); });
 }

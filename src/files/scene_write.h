@@ -30,6 +30,12 @@ Status write_lit_scene(const std::string& file, const Scene& scene, const Lighti
 Status write_mapped_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
                           std::span<const EncodedPage> encoded);
 
+/// The same for any viewer: what the eye sees of the diffuse light is on the textures, and materials are
+/// unlit (KHR_materials_unlit). `exposure` times nits are shown, clamped to 0..1 and sRGB encoded, with alpha
+/// where a material is not opaque. `pages` has one for each of the atlas's.
+Status write_baked_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                         std::span<const BakedPage> pages);
+
 /// Writes a scene that came from no glTF file (procedural, OBJ ...), without light.
 Status write_scene(const std::string& file, const Scene& scene);
 

@@ -90,6 +90,9 @@ class Bake {
         work, [&] { return stop_asked() || time_left() < reserve * options_.time_limit.value_or(0); },
         [&] { tell(stage, share); });
   }
+  bool uses_atlas() const {
+    return options_.mode == OutputMode::kLightmap || options_.mode == OutputMode::kBaked;
+  }
   double tolerated() const { return options_.error.value_or(tolerated_error(options_.quality)); }
   double time_left() const {
     return options_.time_limit ? *options_.time_limit - since(start_)
@@ -108,7 +111,7 @@ class Bake {
   std::unique_ptr<RayCaster> caster_;
   std::unique_ptr<HierarchicalSolver> solver_;
   Lighting lighting_;
-  MappedLight mapped_;                // of OutputMode::kLightmap
+  MappedLight mapped_;                // where uses_atlas()
   std::vector<Receiver> receivers_;   // of options_.points_file
   std::vector<SurfacePlace> places_;  // the same
   std::vector<std::optional<vec3>> light_;
@@ -312,7 +315,7 @@ void Bake::reconstruct_light() {
 }
 
 Status Bake::represent() {
-  if (options_.mode != OutputMode::kLightmap) return Nothing{};
+  if (!uses_atlas()) return Nothing{};
   tell("represent", 0.92);
   const auto begin = Clock::now();
   Result<MappedLight> mapped = map_light(*solver_, lighting_, options_.lightmap, report_);
@@ -352,7 +355,7 @@ Status Bake::write() {
     if (const Status status = write_one(file); !status) return status.error();
     result_.written.push_back(file);
   }
-  if (!options_.lightmap.files.empty() && options_.mode == OutputMode::kLightmap) {
+  if (!options_.lightmap.files.empty() && uses_atlas()) {
     Result<std::vector<std::string>> files =
         write_light_map_files(options_.lightmap.files, scene_, mapped_.atlas);
     if (!files) return files.error();
@@ -390,7 +393,7 @@ Status Bake::write_one(const std::string& file) {
     stable.solver.ray_time_share = 0;
     stable.threads = 0;
     std::optional<LightAtlas> atlas;
-    if (options_.mode == OutputMode::kLightmap) atlas = mapped_.atlas;
+    if (uses_atlas()) atlas = mapped_.atlas;
     return write_solution(file, Solution{stable.json(), scene_, lighting_, std::move(atlas)});
   }
   if (extension == ".png" || extension == ".exr") {
@@ -405,6 +408,11 @@ Status Bake::write_one(const std::string& file) {
   }
   if (options_.mode == OutputMode::kLightmap)
     return write_mapped_scene(file, scene_, mapped_.atlas, mapped_.encoded);
+  if (options_.mode == OutputMode::kBaked) {
+    const float exposure = unlit_exposure(scene_, lighting_, static_cast<float>(options_.exposure));
+    return write_baked_scene(file, scene_, mapped_.atlas,
+                             baked_pages(mapped_.atlas, scene_, options_.lightmap, exposure));
+  }
   SceneWriteOptions write_options;
   write_options.mode = options_.mode;
   if (options_.mode == OutputMode::kUnlit)

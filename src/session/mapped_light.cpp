@@ -11,6 +11,7 @@
 #include "reconstruct/buried.h"
 #include "represent/atlas_fill.h"
 #include "represent/atlas_layout.h"
+#include "represent/outgoing.h"
 
 namespace goldthread {
 namespace {
@@ -135,6 +136,14 @@ Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& 
   for (const AtlasPage& page : mapped.atlas.pages) mapped.encoded.push_back(encode_page(page));
   report.atlas = describe(mapped, stats, options.page_size);
   return mapped;
+}
+
+std::vector<BakedPage> baked_pages(const LightAtlas& atlas, const Scene& scene,
+                                   const LightmapOptions& options, float exposure) {
+  std::vector<BakedPage> pages;
+  for (const OutgoingPage& page : outgoing_pages(atlas, scene, options.padding))
+    pages.push_back(encode_baked_page(page.nits, page.alpha, exposure));
+  return pages;
 }
 
 }  // namespace goldthread

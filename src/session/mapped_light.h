@@ -24,4 +24,8 @@ Status check_lightmap(const LightmapOptions& options);
 Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& lighting,
                               const LightmapOptions& options, BakeReport& report);
 
+/// The maps with the surfaces' colours and emission, as they are shown: nits times `exposure`.
+std::vector<BakedPage> baked_pages(const LightAtlas& atlas, const Scene& scene,
+                                   const LightmapOptions& options, float exposure);
+
 }  // namespace goldthread

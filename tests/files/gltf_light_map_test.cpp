@@ -241,6 +241,38 @@ TEST(GltfLightMap, VariantsKeepTheLight) {
   EXPECT_TRUE(material["extensions"].contains("MOZ_lightmap"));
 }
 
+TEST(GltfLightMap, BakedPagesAreUnlitBaseColours) {
+  const TempFolder folder;
+  GltfBuilder source = one_triangle(false);
+  json& material = source.doc["materials"][0];
+  material["emissiveFactor"] = {1, 1, 1};
+  material["alphaMode"] = "BLEND";
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0, 0, 0.5};
+  const Scene scene = read(folder.write("in.gltf", source.text()));
+  const LightAtlas atlas = atlas_of(scene, 1);
+  std::vector<float> alpha(64, 0.5f);
+  const std::vector<BakedPage> pages = {encode_baked_page(atlas.pages[0].irradiance, alpha, 0.25f)};
+  const std::string out = folder.path("out.glb");
+  ASSERT_TRUE(write_baked_scene(out, scene, atlas, pages));
+  expect_valid(out);
+  const WrittenGltf written(out);
+  const json& shown = written.json["materials"][written.primitive(0)["material"].get<size_t>()];
+  EXPECT_TRUE(shown["extensions"].contains("KHR_materials_unlit"));
+  EXPECT_FALSE(shown.contains("emissiveFactor"));
+  EXPECT_EQ(shown["alphaMode"], "BLEND");
+  EXPECT_EQ(shown["name"], "paint");
+  const json& texture = shown["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_EQ(texture["texCoord"], 1);
+  EXPECT_FALSE(shown["pbrMetallicRoughness"].contains("baseColorFactor"));
+  const std::vector<unsigned char>& bytes = written.model.images[0].image;
+  const Result<Image> picture = decode_image({bytes.data(), bytes.size()});
+  ASSERT_TRUE(picture);
+  // Texel 2 of each row has 2 nits in red, half of what is shown; 1 in green, a quarter.
+  EXPECT_EQ(picture->rgba[8], 188);
+  EXPECT_EQ(picture->rgba[9], 137);
+  EXPECT_EQ(picture->rgba[11], 128);
+}
+
 TEST(GltfLightMap, AnAtlasThatDoesNotFitIsAnError) {
   const TempFolder folder;
   const Scene scene = read(folder.write("in.gltf", one_triangle(false).text()));

@@ -167,6 +167,25 @@ TEST(Lightmap, SeamsDoNotShow) {
   EXPECT_EQ(beyond, 0u) << "of " << 3 * pairs.size();
 }
 
+TEST(Lightmap, BakedScenesShowInAnyViewer) {
+  const TempFolder folder;
+  BakeOptions options = mapped(made(folder, "cornell-box"), {folder.path("a.glb")}, 128);
+  options.mode = OutputMode::kBaked;
+  baked(options);
+  expect_valid(options.outputs[0]);
+  const WrittenGltf written(options.outputs[0]);
+  size_t unlit = 0;
+  for (const json& mesh : written.json["meshes"])
+    for (const json& primitive : mesh["primitives"]) {
+      const json& material = written.json["materials"][primitive["material"].get<size_t>()];
+      ASSERT_TRUE(material["extensions"].contains("KHR_materials_unlit"));
+      const size_t set = material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"];
+      EXPECT_TRUE(primitive["attributes"].contains("TEXCOORD_" + std::to_string(set)));
+      ++unlit;
+    }
+  EXPECT_EQ(unlit, 8u);
+}
+
 TEST(Lightmap, TheSameBytesForAnyNumberOfThreads) {
   const TempFolder folder;
   const std::string input = made(folder, "office");

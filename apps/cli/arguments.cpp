@@ -284,7 +284,7 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
   if (options.points_file.empty() != options.json_file.empty())
     return usage_error("bake needs both or neither of --points and --json",
                        "write --points places.json --json light.json");
-  if (options.outputs.empty() && options.points_file.empty())
+  if (options.outputs.empty() && options.points_file.empty() && options.lightmap.files.empty())
     return usage_error("bake has nothing to write", "add -o lit.glb");
   options.quality = value_of(kQualities, texts.quality);
   if (verb.count("--error") > 0) {

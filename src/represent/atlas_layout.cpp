@@ -89,6 +89,14 @@ const Primitive& source_of(const Scene& scene, const LitMesh& mesh) {
   return scene.meshes[scene.instances[mesh.instance].mesh].primitives[mesh.primitive];
 }
 
+/// One, or two where viewers show the back: what is lit behind because light comes through it shows its front
+/// alone.
+int sides_of(const Scene& scene, const LitPrimitive& lit) {
+  const bool both =
+      !lit.irradiance_back.empty() && scene.materials[source_of(scene, lit).material].double_sided;
+  return both ? 2 : 1;
+}
+
 }  // namespace
 
 double surface_of(const FaceClusterTree& tree) {
@@ -114,7 +122,7 @@ std::optional<LightAtlas> lay_out_atlas(const Scene& scene, const Lighting& ligh
   for (const LitPrimitive& lit : lighting.primitives)
     if (const auto part = part_of.find({lit.instance, lit.primitive}); part != part_of.end()) {
       const auto scale = static_cast<double>(part->second->scale);
-      area += surface_of(*part->second->tree) * scale * scale * (lit.irradiance_back.empty() ? 1 : 2);
+      area += surface_of(*part->second->tree) * scale * scale * sides_of(scene, lit);
     }
   std::map<const FaceClusterTree*, std::vector<Chart>> charts;
   std::vector<Side> sides;
@@ -131,7 +139,7 @@ std::optional<LightAtlas> lay_out_atlas(const Scene& scene, const Lighting& ligh
       known->second = make_charts(*part.tree, limits, cancel, stats.charts);
     }
     if (cancel.cancelled()) return std::nullopt;
-    for (int back = 0; back < (lit.irradiance_back.empty() ? 1 : 2); ++back) {
+    for (int back = 0; back < sides_of(scene, lit); ++back) {
       sides.push_back({&lit, &part, &known->second, back == 1, shapes.size()});
       for (const Chart& chart : known->second) shapes.push_back({chart.faces, chart.coordinates, part.scale});
     }

@@ -34,9 +34,10 @@ struct AtlasStats {
   double use = 0;       ///< Packing::use
 };
 
-/// Every side of every primitive in `lighting` gets its charts on pages that hold no light yet. `parts` are
-/// those of the lighting and may be more. What has no area is left out: it cannot be seen. Triangles that lie
-/// in a primitive twice share a place. Nothing when it does not fit whatever the density, or when cancelled.
+/// Every side that viewers show of every primitive in `lighting` gets its charts on pages that hold no light
+/// yet. `parts` are those of the lighting and may be more. What has no area is left out: it cannot be seen.
+/// Triangles that lie in a primitive twice share a place. Nothing when it does not fit whatever the density,
+/// or when cancelled.
 std::optional<LightAtlas> lay_out_atlas(const Scene& scene, const Lighting& lighting,
                                         std::span<const AtlasPart> parts, const AtlasOptions& options,
                                         const CancelToken& cancel, AtlasStats& stats);

@@ -118,7 +118,8 @@ class Bake {
 };
 
 Status Bake::check_options() const {
-  if (options_.outputs.empty() && options_.points_file.empty())
+  if (options_.outputs.empty() && options_.points_file.empty() &&
+      !(uses_atlas() && !options_.lightmap.files.empty()))
     return Error{ErrorCode::kUsage, "no output given", {}, {}, "add -o lit.glb"};
   if (options_.error && !(*options_.error >= kLeastError && *options_.error <= kMostError))
     return Error{ErrorCode::kUsage,

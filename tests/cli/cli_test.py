@@ -217,6 +217,10 @@ class CliTest(unittest.TestCase):
         self.assertEqual(self.path("box-0.hdr").read_bytes()[:10], b"#?RADIANCE")
         self.assertEqual([p["file"] for p in json.loads(self.path("box.json").read_text())["pages"]], ["box-0.hdr"])
         self.assertGreater(json.loads(self.path("r.json").read_text())["atlas"]["covered_texels"], 128 * 128 // 3)
+        alone = self.run_it("bake", "cornell-box.glb", "--quality", "draft", "--output", "lightmap", "--page-size", "64",
+                            "--map-files", "alone.exr")
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        self.assertTrue(self.path("alone-0.exr").exists())
         texels = self.run_it("compare", "lit.gold", "--reference", "--texels", "--points", "200", "--samples", "64")
         self.assertEqual(texels.returncode, 0, texels.stderr)
         self.assertIn("RMSE", texels.stdout)

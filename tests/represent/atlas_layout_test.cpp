@@ -71,6 +71,21 @@ TEST(AtlasLayout, EveryTriangleOfEverySideHasItsPlace) {
   EXPECT_EQ(seen.size(), 2 * room.source(0).triangle_count() + 2 * room.source(1).triangle_count());
 }
 
+TEST(AtlasLayout, ABackThatNobodyShowsHasNoPlace) {
+  // Light on the back of what is one-sided, as of a lampshade's: it comes through, but the back is not drawn.
+  Room room;
+  room.lighting.primitives[1].irradiance_back = room.lighting.primitives[1].irradiance;
+  AtlasStats stats;
+  const std::optional<LightAtlas> atlas = room.lay_out({128, 1, 2, 0}, stats);
+  ASSERT_TRUE(atlas);
+  size_t backs = 0;
+  for (const MappedMesh& mesh : atlas->meshes) {
+    backs += mesh.back;
+    EXPECT_TRUE(!mesh.back || mesh.instance == 0);
+  }
+  EXPECT_GT(backs, 0u);
+}
+
 TEST(AtlasLayout, TheDensityIsThatOfTheWorld) {
   const Room room;
   AtlasStats stats;

@@ -134,9 +134,21 @@ class LightMapWriter {
     const int64_t material = primitive.value("material", kNoMaterial);
     primitive["material"] = material_for(material, mesh.page, set, two_sided);
     if (primitive.contains("extensions") && primitive["extensions"].contains(kVariants))
-      for (Json& mapping : primitive["extensions"][kVariants].at("mappings"))
-        mapping["material"] = material_for(mapping.at("material").get<int64_t>(), mesh.page, set, two_sided);
+      map_variants(primitive, mesh.page, set, two_sided);
     return Nothing{};
+  }
+
+  /// A page of light serves all variants; one with colours in it would be the wrong one for all but the
+  /// first.
+  void map_variants(Json& primitive, uint32_t page, uint32_t set, bool two_sided) {
+    Json& extensions = primitive["extensions"];
+    if (shows_all_) {
+      extensions.erase(kVariants);
+      if (extensions.empty()) primitive.erase("extensions");
+      return;
+    }
+    for (Json& mapping : extensions[kVariants].at("mappings"))
+      mapping["material"] = material_for(mapping.at("material").get<int64_t>(), page, set, two_sided);
   }
 
   /// The set that an earlier light map had, which goes, or the first free one after TEXCOORD_0.

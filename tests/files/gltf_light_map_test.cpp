@@ -239,6 +239,13 @@ TEST(GltfLightMap, VariantsKeepTheLight) {
   const json& material = written.json["materials"][mapping["material"].get<size_t>()];
   EXPECT_EQ(material["name"], "other");
   EXPECT_TRUE(material["extensions"].contains("MOZ_lightmap"));
+  // Colours on the page are those of one variant: it is the only one left.
+  const LightAtlas atlas = atlas_of(scene, 1);
+  const std::vector<BakedPage> pages = {
+      encode_baked_page(atlas.pages[0].irradiance, std::vector<float>(64, 1.0f), 1)};
+  ASSERT_TRUE(write_baked_scene(out, scene, atlas, pages));
+  expect_valid(out);
+  EXPECT_FALSE(WrittenGltf(out).primitive(0).contains("extensions"));
 }
 
 TEST(GltfLightMap, BakedPagesAreUnlitBaseColours) {

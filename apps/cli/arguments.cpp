@@ -56,6 +56,9 @@ const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
     {"unlit", OutputMode::kUnlit},
     {"lightmap", OutputMode::kLightmap},
     {"baked", OutputMode::kBaked}};
+const std::vector<std::pair<std::string, MapEncoding>> kMapEncodings = {
+    {"float", MapEncoding::kFloat}, {"half", MapEncoding::kHalf}, {"rgbe", MapEncoding::kRgbe},
+    {"rgbm", MapEncoding::kRgbm},   {"rgbd", MapEncoding::kRgbd}, {"srgb", MapEncoding::kSrgb}};
 
 constexpr const char* kSceneFormats = "glTF, GLB, OBJ, PLY, STL, FBX or Collada";
 
@@ -108,7 +111,7 @@ void add_info(CLI::App& app, InfoCommand& info) {
 
 /// Texts of options that become values after parsing.
 struct BakeTexts {
-  std::string quality = "medium", mode = "vertex-light", memory, picture, error;
+  std::string quality = "medium", mode = "vertex-light", memory, picture, error, encoding;
   double time_limit = 0;
   LightTexts light;
 };
@@ -167,10 +170,10 @@ void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
   add_picture(verb, options.exposure, texts.picture, options.report_file);
 }
 
-constexpr const char* kLightmapNames[] = {"--page-size", "--pages", "--padding", "--texel-density",
-                                          "--map-files"};
+constexpr const char* kLightmapNames[] = {"--page-size",     "--pages",     "--padding",
+                                          "--texel-density", "--map-files", "--map-encoding"};
 
-void add_lightmap(CLI::App& verb, LightmapOptions& options) {
+void add_lightmap(CLI::App& verb, LightmapOptions& options, std::string& encoding) {
   const auto group = "Light maps (--output lightmap or baked)";
   verb.add_option("--page-size", options.page_size, "texels aside (1024)")->type_name("N")->group(group);
   verb.add_option("--pages", options.pages, "how many pages at most (1)")->type_name("N")->group(group);
@@ -181,10 +184,18 @@ void add_lightmap(CLI::App& verb, LightmapOptions& options) {
                   "texels a metre, fewer where the pages cannot hold them (what they hold)")
       ->type_name("X")
       ->group(group);
-  verb.add_option("--map-files", options.files,
-                  "pages as files besides, in lux, .exr or .hdr: room.exr stands for\nroom-0.exr, room-1.exr "
-                  "... and room.json, which lists them")
+  verb.add_option(
+          "--map-files", options.files,
+          "pages as files besides, in lux, .exr, .hdr or .png: room.exr stands for\nroom-0.exr, room-1.exr "
+          "... and room.json, which lists them")
       ->type_name("FILE")
+      ->group(group);
+  verb.add_option(
+          "--map-encoding", encoding,
+          "of these: float or half (.exr), rgbe (.hdr), rgbm, rgbd, rgbe or srgb (.png);\nthe first is "
+          "what each has if nothing is said")
+      ->type_name("E")
+      ->check(CLI::IsMember(names_of(kMapEncodings)).description(""))
       ->group(group);
 }
 
@@ -297,6 +308,12 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
       if (verb.count(name) > 0)
         return usage_error(fmt::format("{} is about light maps, and none are asked for", name),
                            "add --output lightmap or --output baked");
+  if (verb.count("--map-encoding") > 0) {
+    if (options.lightmap.files.empty())
+      return usage_error("--map-encoding is about --map-files, and there are none",
+                         "add --map-files maps.exr");
+    options.lightmap.encoding = value_of(kMapEncodings, texts.encoding);
+  }
   if (verb.count("--time-limit") > 0) options.time_limit = texts.time_limit;
   if (verb.count("--max-memory") > 0) {
     options.max_memory = parse_bytes(texts.memory);
@@ -366,7 +383,7 @@ Result<Command> parse_arguments(std::vector<std::string> arguments) {
   CLI::App* bake_verb = app.add_subcommand("bake", "light a scene");
   bake_verb->add_option("SCENE", bake.options.input, kSceneFormats)->required();
   add_bake_output(*bake_verb, bake.options, texts);
-  add_lightmap(*bake_verb, bake.options.lightmap);
+  add_lightmap(*bake_verb, bake.options.lightmap, texts.encoding);
   add_bake_effort(*bake_verb, bake, texts);
   add_light(*bake_verb, texts.light);
   bake_verb->footer(kBakeExamples);

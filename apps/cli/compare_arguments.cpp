@@ -33,7 +33,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   verb->add_flag("--light-maps", options.light_maps,
                  "of solutions baked with --output lightmap: read their light from the maps");
   verb->add_flag("--texels", options.texels,
-                 "the same in the middles of --points texels of A's maps, not at random places")
+                 "the same at --points texels of A's maps, each against the mean over what it covers")
       ->excludes("--seen");
   verb->add_option("--samples", command.samples, "of the reference: paths a point (1024)")
       ->type_name("N")

@@ -22,14 +22,25 @@ enum class OutputMode {
   kBaked,        ///< colour and light in one texture, KHR_materials_unlit: any viewer shows it
 };
 
+/// How light-map files of their own hold lux.
+enum class MapEncoding {
+  kFloat,  ///< .exr: 32-bit floats
+  kHalf,   ///< .exr: 16-bit floats, to 65504 lx
+  kRgbe,   ///< .hdr, and .png with the exponent as alpha
+  kRgbm,   ///< .png: alpha multiplies
+  kRgbd,   ///< .png: alpha divides
+  kSrgb,   ///< .png: eight bits as screens have them; the brightest texels are clipped
+};
+
 /// How light maps are laid out, for kLightmap and kBaked.
 struct LightmapOptions {
   uint32_t page_size = 1024;  ///< texels aside, 4 to 16384
   uint32_t pages = 1;         ///< at most, 1 to 256
   uint32_t padding = 2;       ///< free texels between charts, 0 to 64
-  /// Pages as files of their own besides, irradiance in lux, .exr or .hdr: room.exr stands for room-0.exr,
-  /// room-1.exr ... and room.json, which lists them. Empty for none.
+  /// Pages as files of their own besides, irradiance in lux, .exr, .hdr or .png: room.exr stands for
+  /// room-0.exr, room-1.exr ... and room.json, which lists them. Empty for none.
   std::string files;
+  std::optional<MapEncoding> encoding;  ///< of `files`; none: kFloat, kRgbe or kRgbm, by extension
   double texel_density = 0;  ///< texels a metre, lowered where the pages cannot hold it; 0: what they hold
 };
 

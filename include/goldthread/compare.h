@@ -15,11 +15,12 @@ struct CompareOptions {
   std::string second;      ///< what it is measured against, of the same kind; empty with `reference`
   bool reference = false;  ///< measure `first`, a solution, against path tracing of its own scene
 
-  uint64_t points = 1000;              ///< random places over the lit surfaces, by area
-  bool seen = false;                   ///< instead, what the camera sees at the middle of each pixel
-  bool light_maps = false;             ///< light is read from the solutions' light maps, not their vertices
-  bool texels = false;                 ///< the same at `points` of the texels of `first`, in their centres
-  std::optional<uint64_t> samples;     ///< reference: a point; 1024 when neither this nor the next is given
+  uint64_t points = 1000;   ///< random places over the lit surfaces, by area
+  bool seen = false;        ///< instead, what the camera sees at the middle of each pixel
+  bool light_maps = false;  ///< light is read from the solutions' light maps, not their vertices
+  bool texels = false;      ///< the same at `points` of the texels of `first`, which stand for means
+  std::optional<uint64_t>
+      samples;  ///< reference: a point or texel; 1024 when neither this nor the next is given
   std::optional<double> target_error;  ///< reference: stop at this mean of standard error over irradiance
   std::optional<double> time_limit;    ///< reference: seconds for all of it
   uint64_t seed = 0;
@@ -47,8 +48,10 @@ struct CompareResult {
 /// Measures luminance: irradiance (lux) at points of surfaces, or pixels. Errors are differences over the
 /// mean of what is measured against (relative_rmse, bias), or over its value there, at least a hundredth of
 /// the mean (the others). Points inside solids, as of the floor beneath a box, are left out and told by
-/// themselves. The reference's own noise is taken off the RMSE in quadrature, and told. When
-/// cancelled what was traced so far is compared.
+/// themselves. A texel is measured against the mean over what triangles have of it and anybody sees, at 16
+/// places spread over it: a point would not tell what a texel on a shadow's edge should hold. The reference's
+/// own noise is taken off the RMSE in quadrature, and told. When cancelled what was traced so far is
+/// compared.
 Result<CompareResult> compare(const CompareOptions& options, const BakeListener& listener = {});
 
 }  // namespace goldthread

@@ -6,7 +6,9 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <half.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -35,11 +37,21 @@ uint8_t to_byte(float linear) {
 }
 
 /// The EXR file in memory, so that disk trouble is AtomicFile's to report.
-std::string encode_exr(const FloatImage& image, const LayeredImage* more) {
+std::string encode_exr(const FloatImage& image, const LayeredImage* more, ExrDepth depth) {
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
+  std::vector<std::vector<half>> halves;  // that the frame reads
   const auto add = [&](const std::string& name, const float* first, size_t stride) {
+    if (depth == ExrDepth::kHalf) {
+      std::vector<half>& own = halves.emplace_back(size_t{image.width} * image.height);
+      for (size_t i = 0; i < own.size(); ++i)
+        own[i] = half(std::clamp(first[i * stride / sizeof(float)], -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX)));
+      header.channels().insert(name, Imf::Channel(Imf::HALF));
+      frame.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(own.data()), sizeof(half),
+                                    sizeof(half) * image.width));
+      return;
+    }
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     auto* base = reinterpret_cast<char*>(const_cast<float*>(first));  // Imf reads only
     frame.insert(name, Imf::Slice(Imf::FLOAT, base, stride, stride * image.width));
@@ -60,11 +72,11 @@ std::string encode_exr(const FloatImage& image, const LayeredImage* more) {
   return stream.str();
 }
 
-Status write_exr(const std::string& file, const FloatImage& image, const LayeredImage* more) {
+Status write_exr(const std::string& file, const FloatImage& image, const LayeredImage* more, ExrDepth depth) {
   constexpr uint32_t kLargest = 1u << 30;  // Imf counts in int
   if (!consistent(image) || image.width > kLargest || image.height > kLargest) return not_a_picture(file);
   try {
-    const std::string bytes = encode_exr(image, more);
+    const std::string bytes = encode_exr(image, more, depth);
     return write_file_atomically(file, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
   } catch (const std::exception& failure) {
     return Error{ErrorCode::kCannotWrite, std::string("OpenEXR: ") + failure.what(), file, "", ""};
@@ -86,13 +98,13 @@ Status write_png(const std::string& file, const FloatImage& image) {
 }
 
 Status write_exr(const std::string& file, const FloatImage& image) {
-  return write_exr(file, image, nullptr);
+  return write_exr(file, image, nullptr, ExrDepth::kFloat);
 }
 
-Status write_layered_exr(const std::string& file, const LayeredImage& image) {
+Status write_layered_exr(const std::string& file, const LayeredImage& image, ExrDepth depth) {
   for (const auto& [name, values] : image.layers)
     if (values.size() != image.image.pixels.size()) return not_a_picture(file);
-  return write_exr(file, image.image, &image);
+  return write_exr(file, image.image, &image, depth);
 }
 
 }  // namespace goldthread

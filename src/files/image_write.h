@@ -11,7 +11,10 @@ namespace goldthread {
 Status write_png(const std::string& file, const FloatImage& image);
 /// Scene-linear values, 32-bit float channels R, G, B.
 Status write_exr(const std::string& file, const FloatImage& image);
-/// The same with a 32-bit float channel a layer, and notes as text attributes of the header.
-Status write_layered_exr(const std::string& file, const LayeredImage& image);
+/// What R, G and B are kept as. Half floats end at 65504; what is more becomes that.
+enum class ExrDepth { kFloat, kHalf };
+/// The same with a channel a layer, of the same depth, and notes as text attributes of the header.
+Status write_layered_exr(const std::string& file, const LayeredImage& image,
+                         ExrDepth depth = ExrDepth::kFloat);
 
 }  // namespace goldthread

@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/check.h"
 #include "files/atomic_file.h"
 #include "files/file_name.h"
 #include "files/hdr_encode.h"
 #include "files/image_write.h"
+#include "files/light_map_pack.h"
+#include "files/png_encode.h"
 
 namespace goldthread {
 namespace {
@@ -17,12 +20,52 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Status write_page(const std::string& file, const AtlasPage& page) {
+constexpr MapEncoding kOfExr[] = {MapEncoding::kFloat, MapEncoding::kHalf};
+constexpr MapEncoding kOfHdr[] = {MapEncoding::kRgbe};
+constexpr MapEncoding kOfPng[] = {MapEncoding::kRgbm, MapEncoding::kRgbd, MapEncoding::kRgbe,
+                                  MapEncoding::kSrgb};
+
+const char* name_of(MapEncoding encoding) {
+  switch (encoding) {
+    case MapEncoding::kFloat:
+      return "linear float";
+    case MapEncoding::kHalf:
+      return "linear half";
+    case MapEncoding::kRgbe:
+      return "linear rgbe";
+    case MapEncoding::kRgbm:
+      return "linear rgbm";
+    case MapEncoding::kRgbd:
+      return "linear rgbd";
+    case MapEncoding::kSrgb:
+      return "srgb";
+  }
+  GOLDTHREAD_CHECK_LT(0, 0);  // every encoding has its name
+  return "";
+}
+
+/// A .png file; `scale` becomes PackedLight's.
+Status write_packed(const std::string& file, const AtlasPage& page, MapEncoding encoding, float white,
+                    float& scale) {
+  const FloatImage& light = page.irradiance;
+  const PackedLight packed = pack_light(light, encoding, white);
+  scale = packed.scale;
+  const PngContent content = encoding == MapEncoding::kSrgb ? PngContent::kSrgb : PngContent::kData;
+  const std::vector<uint8_t> png =
+      encode_png(light.width, light.height, packed.channels, packed.bytes, content);
+  if (png.empty())
+    return Error{ErrorCode::kCannotWrite, "a page of the light map is larger than PNG holds", file, "",
+                 "give a smaller --page-size"};
+  return write_file_atomically(file, png);
+}
+
+Status write_page(const std::string& file, const AtlasPage& page, MapEncoding encoding) {
   if (file_extension(file) == ".hdr") return write_file_atomically(file, encode_hdr(page.irradiance));
   LayeredImage layered;
   layered.image = page.irradiance;
   layered.layers["A"] = {page.covered.begin(), page.covered.end()};
-  return write_layered_exr(file, layered);
+  return write_layered_exr(file, layered,
+                           encoding == MapEncoding::kHalf ? ExrDepth::kHalf : ExrDepth::kFloat);
 }
 
 Json describe_page(const std::string& file, const AtlasPage& page) {
@@ -67,18 +110,35 @@ std::string light_map_list_file(const std::string& file) {
   return fs::path(file).replace_extension(".json").string();
 }
 
-Result<std::vector<std::string>> write_light_map_files(const std::string& file, const Scene& scene,
-                                                       const LightAtlas& atlas) {
+std::span<const MapEncoding> encodings_of(const std::string& extension) {
+  if (extension == ".exr") return kOfExr;
+  if (extension == ".hdr") return kOfHdr;
+  if (extension == ".png") return kOfPng;
+  return {};
+}
+
+Result<std::vector<std::string>> write_light_map_files(const std::string& file, MapEncoding encoding,
+                                                       const Scene& scene, const LightAtlas& atlas,
+                                                       std::span<const EncodedPage> encoded) {
   std::vector<std::string> written;
-  Json list = {{"encoding", file_extension(file) == ".hdr" ? "linear rgbe" : "linear float"},
+  Json list = {{"encoding", name_of(encoding)},
                {"unit", "lux"},
                {"texels_per_metre", atlas.texels_per_metre},
                {"pages", Json::array()},
                {"objects", Json::array()}};
   for (size_t page = 0; page < atlas.pages.size(); ++page) {
     written.push_back(light_map_page_file(file, page));
-    if (const Status status = write_page(written.back(), atlas.pages[page]); !status) return status.error();
     list["pages"].push_back(describe_page(written.back(), atlas.pages[page]));
+    if (file_extension(file) != ".png") {
+      if (const Status status = write_page(written.back(), atlas.pages[page], encoding); !status)
+        return status.error();
+      continue;
+    }
+    float scale = 1;
+    const Status status =
+        write_packed(written.back(), atlas.pages[page], encoding, encoded[page].intensity, scale);
+    if (!status) return status.error();
+    list["pages"].back()["scale"] = scale;
   }
   for (const MappedMesh& mesh : atlas.meshes) list["objects"].push_back(describe_mesh(mesh, scene));
   const std::string text = list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

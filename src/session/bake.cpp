@@ -357,8 +357,8 @@ Status Bake::write() {
     result_.written.push_back(file);
   }
   if (!options_.lightmap.files.empty() && uses_atlas()) {
-    Result<std::vector<std::string>> files =
-        write_light_map_files(options_.lightmap.files, scene_, mapped_.atlas);
+    Result<std::vector<std::string>> files = write_light_map_files(
+        options_.lightmap.files, map_encoding(options_.lightmap), scene_, mapped_.atlas, mapped_.encoded);
     if (!files) return files.error();
     result_.written.insert(result_.written.end(), files->begin(), files->end());
   }

@@ -5,6 +5,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "base/parallel.h"
@@ -122,9 +123,11 @@ class Comparison {
   Result<Answer> load(const std::string& file) const;
   Result<std::vector<Measured>> measure(const Answer& first, const Answer* second,
                                         const std::vector<Receiver>& receivers, std::vector<size_t>& which,
-                                        uint64_t seed);
-  std::vector<IrradianceValue> trace(const TracedScene& scene, const std::vector<Receiver>& receivers,
-                                     uint64_t seed);
+                                        uint64_t seed, const MappedTexels* texels = nullptr);
+  /// Where `sharing` receivers together are one place of those asked about, each gets its share of samples.
+  std::vector<IrradianceSums> trace(const TracedScene& scene, const std::vector<Receiver>& receivers,
+                                    uint64_t seed, uint32_t sharing = 1);
+  std::vector<IrradianceSums> trace_texels(const TracedScene& scene, const MappedTexels& texels);
   Status paint_solutions(const Answer& first, const Answer* second);
   Status paint(const FloatImage& image);
   Result<CompareResult> write();
@@ -213,14 +216,16 @@ Result<Answer> Comparison::load(const std::string& file) const {
   return answer;
 }
 
-std::vector<IrradianceValue> Comparison::trace(const TracedScene& scene,
-                                               const std::vector<Receiver>& receivers, uint64_t seed) {
+std::vector<IrradianceSums> Comparison::trace(const TracedScene& scene,
+                                              const std::vector<Receiver>& receivers, uint64_t seed,
+                                              uint32_t sharing) {
   const PathTracer tracer(scene);
   IrradianceEstimate estimate(tracer, receivers, seed);
   StopRules rules;
   const bool open = !options_.samples && !options_.target_error && !options_.time_limit;
   rules.samples = options_.samples.value_or(open ? kUsualSamples : 0);
-  rules.target_error = options_.target_error.value_or(0);
+  rules.samples = (rules.samples + sharing - 1) / sharing;
+  rules.target_error = options_.target_error.value_or(0) * std::sqrt(sharing);
   if (options_.time_limit) rules.time_limit = std::max(0.0, *options_.time_limit - since(start_));
   run_watched(
       [&](const CancelToken& cancel) { static_cast<void>(estimate.run(rules, cancel)); },
@@ -236,34 +241,49 @@ std::vector<IrradianceValue> Comparison::trace(const TracedScene& scene,
                                now.error, seconds, share > 0.02 ? seconds * (1 - share) / share : -1});
       });
   rays_ += estimate.rays().rays;
-  std::vector<IrradianceValue> values;
   least_samples_ = std::numeric_limits<uint64_t>::max();
-  for (const IrradianceSums& sums : estimate.sums()) {
-    values.push_back(evaluate(sums));
-    least_samples_ = std::min(least_samples_, sums.samples);
+  for (const IrradianceSums& sums : estimate.sums()) least_samples_ = std::min(least_samples_, sums.samples);
+  return estimate.sums();
+}
+
+// What a texel stands for is the mean over what it covers. Its places share the samples that a point gets.
+std::vector<IrradianceSums> Comparison::trace_texels(const TracedScene& scene, const MappedTexels& texels) {
+  const std::vector<IrradianceSums> places = trace(scene, texels.places, options_.seed, kPlacesInTexel);
+  std::vector<IrradianceSums> means(texels.centres.size());
+  least_samples_ = std::numeric_limits<uint64_t>::max();
+  for (size_t i = 0; i < means.size(); ++i) {
+    uint64_t each = std::numeric_limits<uint64_t>::max();  // an unfinished round leaves some with more
+    for (size_t p = texels.first[i]; p < texels.first[i + 1]; ++p) each = std::min(each, places[p].samples);
+    for (size_t p = texels.first[i]; p < texels.first[i + 1] && each > 0; ++p) {
+      const double share = static_cast<double>(each) / static_cast<double>(places[p].samples);
+      for (size_t b = 0; b < kBatches; ++b) means[i].batches[b] += share * places[p].batches[b];
+      means[i].samples += each;
+    }
+    least_samples_ = std::min(least_samples_, means[i].samples);
   }
-  return values;
+  return means;
 }
 
 // `which` receivers both have an answer for.
 Result<std::vector<Measured>> Comparison::measure(const Answer& first, const Answer* second,
                                                   const std::vector<Receiver>& receivers,
-                                                  std::vector<size_t>& which, uint64_t seed) {
-  std::vector<IrradianceValue> truth(receivers.size());
+                                                  std::vector<size_t>& which, uint64_t seed,
+                                                  const MappedTexels* texels) {
+  std::vector<IrradianceSums> sums(receivers.size());
   const TracedScene& scene = *first.traced;
-  if (!second) truth = trace(scene, receivers, seed);
+  if (!second) sums = texels ? trace_texels(scene, *texels) : trace(scene, receivers, seed);
   if (!second && least_samples_ == 0)
     return Error{ErrorCode::kCancelled, "stopped before every point had a sample", options_.first, {}, {}};
   std::vector<Measured> places;
   for (size_t i = 0; i < receivers.size(); ++i) {
     const std::optional<vec3> value = first.at(scene, receivers[i]);
-    const std::optional<vec3> other =
-        second ? second->at(*second->traced, receivers[i]) : vec3(truth[i].mean);
+    const IrradianceValue truth = evaluate(sums[i]);
+    const std::optional<vec3> other = second ? second->at(*second->traced, receivers[i]) : vec3(truth.mean);
     if (!value || !other) {
       ++unlit_;
       continue;
     }
-    const auto error = static_cast<double>(luminance(vec3(truth[i].standard_error)));
+    const auto error = static_cast<double>(luminance(vec3(truth.standard_error)));
     places.push_back({dvec3(receivers[i].point), static_cast<double>(luminance(*value)),
                       static_cast<double>(luminance(*other)), second ? 0.0 : error});
     which.push_back(i);
@@ -303,11 +323,13 @@ Status Comparison::compare_solutions() {
                    "compare solutions of the same geometry"};
   }
   std::vector<Receiver> receivers;
+  MappedTexels texels;
   if (options_.seen) {
     receivers = look(*first->traced, options_.picture_width, options_.picture_height).receivers;
   } else if (options_.texels) {
-    receivers = mapped_texel_receivers(*first->traced, *first->solution.atlas, options_.points,
-                                       static_cast<uint32_t>(options_.seed));
+    texels = mapped_texels(*first->traced, *first->solution.atlas, options_.points,
+                           static_cast<uint32_t>(options_.seed));
+    receivers = texels.centres;
   } else {
     receivers = random_receivers(*first->traced, options_.points, static_cast<uint32_t>(options_.seed));
     for (Receiver& r : receivers) turn_to_shading_normal(*first->traced, r);
@@ -320,7 +342,8 @@ Status Comparison::compare_solutions() {
                  "leave --seen out, or turn the camera"};
   std::vector<size_t> which;
   const Result<std::vector<Measured>> places =
-      measure(*first, second ? &*second : nullptr, receivers, which, options_.seed);
+      measure(*first, second ? &*second : nullptr, receivers, which, options_.seed,
+              options_.texels && !options_.seen ? &texels : nullptr);
   if (!places) return places.error();
   // What lies inside solids nobody sees; an error there is told by itself.
   std::vector<Measured> seen;

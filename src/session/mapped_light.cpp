@@ -97,12 +97,22 @@ Status check_lightmap(const LightmapOptions& options) {
     return usage(fmt::format("{:g} texels a metre cannot be had", options.texel_density),
                  "choose a --texel-density above 0, or leave it out");
   if (options.files.empty()) return Nothing{};
-  const std::string extension = file_extension(options.files);
-  if (extension != ".exr" && extension != ".hdr")
+  const std::span<const MapEncoding> known = encodings_of(file_extension(options.files));
+  if (known.empty())
     return Error{
-        ErrorCode::kUsage, "light maps are no such files", options.files, {}, "end it in .exr or .hdr"};
+        ErrorCode::kUsage, "light maps are no such files", options.files, {}, "end it in .exr, .hdr or .png"};
+  if (options.encoding && std::find(known.begin(), known.end(), *options.encoding) == known.end())
+    return Error{ErrorCode::kUsage,
+                 "such files have no light maps of that encoding",
+                 options.files,
+                 {},
+                 ".exr has float and half, .hdr rgbe, .png rgbm, rgbd, rgbe and srgb"};
   if (const auto probe = AtomicFile::create(light_map_list_file(options.files)); !probe) return probe.error();
   return Nothing{};
+}
+
+MapEncoding map_encoding(const LightmapOptions& options) {
+  return options.encoding.value_or(encodings_of(file_extension(options.files)).front());
 }
 
 Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& lighting,

@@ -19,6 +19,9 @@ struct MappedLight {
 /// A usage Error that names the option which is out of its range.
 Status check_lightmap(const LightmapOptions& options);
 
+/// Of LightmapOptions::files, which have been checked.
+MapEncoding map_encoding(const LightmapOptions& options);
+
 /// Puts the light of `lighting`, which is of the solver's scene, on pages. Fills `report.atlas`, and
 /// adds a warning where the density asked for had to be lowered. An Error where no density fits.
 Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& lighting,

@@ -89,7 +89,10 @@ class CliTest(unittest.TestCase):
         self.assert_fails(2, ["--map-files", "--output lightmap"], *bake, "--map-files", "maps.exr")
         self.assert_fails(2, ["--page-size"], *bake, "--output", "lightmap", "--page-size", "3")
         self.assert_fails(2, ["--padding"], *bake, "--output", "lightmap", "--padding", "many")
-        self.assert_fails(2, [".exr or .hdr"], *bake, "--output", "lightmap", "--map-files", "maps.png")
+        self.assert_fails(2, [".exr, .hdr or .png"], *bake, "--output", "lightmap", "--map-files", "maps.jpg")
+        self.assert_fails(2, [".png rgbm"], *bake, "--output", "lightmap", "--map-files", "maps.exr",
+                          "--map-encoding", "rgbm")
+        self.assert_fails(2, ["--map-files"], *bake, "--output", "lightmap", "--map-encoding", "half")
         for wrong, *options in [["--place", "--place", "1,2"], ["--place", "--place", "1", "--date", "2026-01-02", "--time", "12:00"],
                                 ["--date", "--place", "1,2", "--date", "2026-1", "--time", "12:00"],
                                 ["--time", "--place", "1,2", "--date", "2026-01-02", "--time", "25:00"],

@@ -82,6 +82,44 @@ TEST(Lightmap, FilesOpenEverywhereAndSayWhatIsInThem) {
   }
 }
 
+TEST(Lightmap, EveryEncodingOfMapFilesSaysHowItIsRead) {
+  const TempFolder folder;
+  const std::string scene = made(folder, "cornell-box");
+  const auto bake_to = [&](const std::string& file, std::optional<MapEncoding> encoding) {
+    BakeOptions options = mapped(scene, {}, 64);
+    options.lightmap.files = folder.path(file);
+    options.lightmap.encoding = encoding;
+    baked(options);
+    return json::parse(bytes_of_file(folder.path(file.substr(0, file.size() - 4) + ".json")));
+  };
+  EXPECT_EQ(bake_to("float.exr", {})["encoding"], "linear float");
+  EXPECT_EQ(bake_to("half.exr", MapEncoding::kHalf)["encoding"], "linear half");
+  const Result<FloatImage> whole = read_picture(folder.path("float-0.exr")),
+                           half = read_picture(folder.path("half-0.exr"));
+  ASSERT_TRUE(whole && half);
+  bool rounded = false;
+  for (size_t i = 0; i < whole->pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(half->pixels[i][c], whole->pixels[i][c], whole->pixels[i][c] / 2048 + 1e-6f);
+      rounded = rounded || half->pixels[i][c] != whole->pixels[i][c];
+    }
+  EXPECT_TRUE(rounded);
+  const json rgbm = bake_to("m.png", {});
+  EXPECT_EQ(rgbm["encoding"], "linear rgbm");
+  EXPECT_GT(rgbm["pages"][0]["scale"].get<double>(), 100);
+  EXPECT_EQ(bake_to("d.png", MapEncoding::kRgbd)["encoding"], "linear rgbd");
+  EXPECT_EQ(bake_to("e.png", MapEncoding::kRgbe)["pages"][0]["scale"], 1);
+  EXPECT_EQ(bake_to("s.png", MapEncoding::kSrgb)["encoding"], "srgb");
+
+  BakeOptions wrong = mapped(scene, {}, 64);
+  wrong.lightmap.files = folder.path("a.exr");
+  wrong.lightmap.encoding = MapEncoding::kRgbm;
+  const Result<BakeResult> refused = bake(wrong);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
+  EXPECT_THAT(refused.error().line(), HasSubstr(".png rgbm"));
+}
+
 /// Two places of one point of the world, on different charts.
 struct SeamPair {
   vec3 first, second;
@@ -235,7 +273,7 @@ TEST(Lightmap, WishesThatMakeNoSense) {
   EXPECT_THAT(line_of([](LightmapOptions& o) { o.texel_density = -1; }), HasSubstr("--texel-density"));
   EXPECT_THAT(line_of([](LightmapOptions& o) { o.texel_density = std::nan(""); }),
               HasSubstr("--texel-density"));
-  EXPECT_THAT(line_of([](LightmapOptions& o) { o.files = "maps.bmp"; }), HasSubstr(".exr or .hdr"));
+  EXPECT_THAT(line_of([](LightmapOptions& o) { o.files = "maps.bmp"; }), HasSubstr(".exr, .hdr or .png"));
 }
 
 TEST(Lightmap, ASolutionWithoutMapsSaysSo) {

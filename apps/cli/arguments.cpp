@@ -55,7 +55,8 @@ const std::vector<std::pair<std::string, OutputMode>> kOutputModes = {
     {"vertex-light", OutputMode::kVertexLight},
     {"unlit", OutputMode::kUnlit},
     {"lightmap", OutputMode::kLightmap},
-    {"baked", OutputMode::kBaked}};
+    {"baked", OutputMode::kBaked},
+    {"occlusion", OutputMode::kOcclusion}};
 const std::vector<std::pair<std::string, MapEncoding>> kMapEncodings = {
     {"float", MapEncoding::kFloat}, {"half", MapEncoding::kHalf}, {"rgbe", MapEncoding::kRgbe},
     {"rgbm", MapEncoding::kRgbm},   {"rgbd", MapEncoding::kRgbd}, {"srgb", MapEncoding::kSrgb}};
@@ -162,8 +163,9 @@ void add_bake_output(CLI::App& verb, BakeOptions& options, BakeTexts& texts) {
   verb.add_option("--json", options.json_file, "where to: a file, - to print")
       ->type_name("FILE")
       ->group(kResults);
-  verb.add_option("--output", texts.mode,
-                  "how the scene carries light: vertex-light, unlit, lightmap or baked (vertex-light)")
+  verb.add_option(
+          "--output", texts.mode,
+          "how the scene carries light: vertex-light, unlit, lightmap, baked or occlusion\n(vertex-light)")
       ->type_name("MODE")
       ->check(CLI::IsMember(names_of(kOutputModes)).description(""))
       ->group(kResults);
@@ -174,7 +176,7 @@ constexpr const char* kLightmapNames[] = {"--page-size",     "--pages",     "--p
                                           "--texel-density", "--map-files", "--map-encoding"};
 
 void add_lightmap(CLI::App& verb, LightmapOptions& options, std::string& encoding) {
-  const auto group = "Light maps (--output lightmap or baked)";
+  const auto group = "Light maps (--output lightmap, baked or occlusion)";
   verb.add_option("--page-size", options.page_size, "texels aside (1024)")->type_name("N")->group(group);
   verb.add_option("--pages", options.pages, "how many pages at most (1)")->type_name("N")->group(group);
   verb.add_option("--padding", options.padding, "free texels between charts (2)")
@@ -303,11 +305,11 @@ Status finish_bake(const CLI::App& verb, const BakeTexts& texts, BakeOptions& op
     if (!options.error) return usage_error("--error: '" + texts.error + "' is no share", "write 0.02 or 2%");
   }
   options.mode = value_of(kOutputModes, texts.mode);
-  if (options.mode != OutputMode::kLightmap && options.mode != OutputMode::kBaked)
+  if (options.mode == OutputMode::kVertexLight || options.mode == OutputMode::kUnlit)
     for (const char* name : kLightmapNames)
       if (verb.count(name) > 0)
         return usage_error(fmt::format("{} is about light maps, and none are asked for", name),
-                           "add --output lightmap or --output baked");
+                           "add --output lightmap, baked or occlusion");
   if (verb.count("--map-encoding") > 0) {
     if (options.lightmap.files.empty())
       return usage_error("--map-encoding is about --map-files, and there are none",

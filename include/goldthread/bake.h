@@ -20,6 +20,8 @@ enum class OutputMode {
                  ///< two-sided ones
   kLightmap,     ///< textures under MOZ_lightmap beside materials that are else as they were
   kBaked,        ///< colour and light in one texture, KHR_materials_unlit: any viewer shows it
+  kOcclusion,    ///< luminance as the materials' occlusion texture: viewers that know no light maps darken
+                 ///< their own ambient light by it
 };
 
 /// How light-map files of their own hold lux.
@@ -32,7 +34,7 @@ enum class MapEncoding {
   kSrgb,   ///< .png: eight bits as screens have them; the brightest texels are clipped
 };
 
-/// How light maps are laid out, for kLightmap and kBaked.
+/// How light maps are laid out, for kLightmap, kBaked and kOcclusion.
 struct LightmapOptions {
   uint32_t page_size = 1024;  ///< texels aside, 4 to 16384
   uint32_t pages = 1;         ///< at most, 1 to 256

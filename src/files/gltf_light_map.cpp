@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kLightMap = "MOZ_lightmap";
 constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kVariants = "KHR_materials_variants";
+constexpr const char* kLux = "goldthread_lux";
 constexpr int64_t kNoMaterial = -1;
 
 /// A page in the document.
@@ -25,11 +26,20 @@ struct PageTexture {
   float intensity = 1;
 };
 
-/// What textures hold: light alone, or what the eye sees. One of the two is empty.
+/// How materials are to show the pages.
+enum class PageUse { kLight, kBaked, kOcclusion };
+
+/// What textures hold: what the eye sees (kBaked), or light alone. The other is empty.
 struct Textures {
+  PageUse use = PageUse::kLight;
   std::span<const EncodedPage> light;
   std::span<const BakedPage> baked;
 };
+
+const char* name_of(PageUse use) {
+  if (use == PageUse::kBaked) return "baked";
+  return use == PageUse::kOcclusion ? "occlusion" : "light map";
+}
 
 class LightMapWriter {
  public:
@@ -40,7 +50,7 @@ class LightMapWriter {
         scene_(scene),
         atlas_(atlas),
         textures_(textures),
-        shows_all_(!textures.baked.empty()),
+        shows_all_(textures.use == PageUse::kBaked),
         read_(read),
         geometry_(document, scene, read) {}
 
@@ -58,7 +68,8 @@ class LightMapWriter {
       if (Status status = map_mesh(groups.back(), meshes); !status) return status;
     }
     if (Status status = assign_meshes(document_, map_, groups, read_, scene_.file); !status) return status;
-    if (!groups.empty()) use_extension(document_, shows_all_ ? kUnlit : kLightMap);
+    if (!groups.empty() && textures_.use != PageUse::kOcclusion)
+      use_extension(document_, shows_all_ ? kUnlit : kLightMap);
     geometry_.drop_unused_extensions();
     if (!shows_all_) turn_lamps_off();
     return Nothing{};
@@ -79,7 +90,7 @@ class LightMapWriter {
       if (png.empty())
         return Error{ErrorCode::kCannotWrite, "a page of the light map is larger than PNG holds", scene_.file,
                      "", "give a smaller --page-size"};
-      const std::string name = fmt::format("{} {}", shows_all_ ? "baked" : "light map", p);
+      const std::string name = fmt::format("{} {}", name_of(textures_.use), p);
       const uint32_t view = append_view(document_, png);
       const uint32_t source =
           append_to(document_, "images", {{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}});
@@ -157,6 +168,8 @@ class LightMapWriter {
       const Json& material = document_.json.at("materials").at(primitive["material"].get<size_t>());
       if (material.contains("extensions") && material["extensions"].contains(kLightMap))
         return material["extensions"][kLightMap].value("texCoord", 1u);
+      const Json::json_pointer ours("/occlusionTexture/extras/goldthread_lux");
+      if (material.contains(ours)) return material["occlusionTexture"].value("texCoord", 1u);
     }
     uint32_t set = 1;
     while (primitive.at("attributes").contains(fmt::format("TEXCOORD_{}", set))) ++set;
@@ -172,6 +185,10 @@ class LightMapWriter {
     if (two_sided) material.erase("doubleSided");  // front and back are triangles of their own now
     if (shows_all_)
       show_page(material, page, set);
+    else if (textures_.use == PageUse::kOcclusion)
+      material["occlusionTexture"] = {{"index", pages_[page].texture},
+                                      {"texCoord", set},
+                                      {"extras", {{kLux, shortest(pages_[page].intensity)}}}};
     else
       material["extensions"][kLightMap] = {{"index", pages_[page].texture},
                                            {"texCoord", set},
@@ -221,12 +238,18 @@ class LightMapWriter {
 Status add_light_maps(GltfDocument& document, const DocumentMap& map, const Scene& scene,
                       const LightAtlas& atlas, std::span<const EncodedPage> encoded,
                       const SourceReader& read) {
-  return LightMapWriter(document, map, scene, atlas, {encoded, {}}, read).add();
+  return LightMapWriter(document, map, scene, atlas, {PageUse::kLight, encoded, {}}, read).add();
 }
 
 Status add_baked_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
                        const LightAtlas& atlas, std::span<const BakedPage> baked, const SourceReader& read) {
-  return LightMapWriter(document, map, scene, atlas, {{}, baked}, read).add();
+  return LightMapWriter(document, map, scene, atlas, {PageUse::kBaked, {}, baked}, read).add();
+}
+
+Status add_occlusion_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
+                           const LightAtlas& atlas, std::span<const EncodedPage> grey,
+                           const SourceReader& read) {
+  return LightMapWriter(document, map, scene, atlas, {PageUse::kOcclusion, grey, {}}, read).add();
 }
 
 }  // namespace goldthread

@@ -27,4 +27,12 @@ Status add_light_maps(GltfDocument& document, const DocumentMap& map, const Scen
 Status add_baked_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
                        const LightAtlas& atlas, std::span<const BakedPage> baked, const SourceReader& read);
 
+/// The same with materials as they were but for their occlusionTexture, which is the page, of which `grey`
+/// has one each: a viewer's own ambient light is darkened to what the light is of its brightest. The
+/// texture's `extras.goldthread_lux` says what white stands for. An occlusion texture that was there goes.
+/// Lamps are written with intensity 0, or their light would come twice.
+Status add_occlusion_pages(GltfDocument& document, const DocumentMap& map, const Scene& scene,
+                           const LightAtlas& atlas, std::span<const EncodedPage> grey,
+                           const SourceReader& read);
+
 }  // namespace goldthread

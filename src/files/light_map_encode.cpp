@@ -86,6 +86,12 @@ BakedPage encode_baked_page(const FloatImage& nits, const std::vector<float>& al
   return page;
 }
 
+EncodedPage encode_grey_page(const AtlasPage& page) {
+  AtlasPage grey = page;
+  for (vec3& light : grey.irradiance.pixels) light = vec3(luminance(light));
+  return encode_page(grey);
+}
+
 EncodedPage encode_page(const AtlasPage& page) {
   const std::vector<vec3>& pixels = page.irradiance.pixels;
   std::vector<float> values;

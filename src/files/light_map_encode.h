@@ -27,4 +27,7 @@ BakedPage encode_baked_page(const FloatImage& nits, const std::vector<float>& al
 /// neighbours get, so that slow gradients show no bands.
 EncodedPage encode_page(const AtlasPage& page);
 
+/// The same of luminance, alike in all three channels.
+EncodedPage encode_grey_page(const AtlasPage& page);
+
 }  // namespace goldthread

@@ -113,6 +113,14 @@ Status write_baked_scene(const std::string& file, const Scene& scene, const Ligh
   return guarded(file, scene, [&] { return write_with(file, scene, add); });
 }
 
+Status write_occluded_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                            std::span<const EncodedPage> grey) {
+  const auto add = [&](GltfDocument& document, const DocumentMap& map, const SourceReader& read) {
+    return add_occlusion_pages(document, map, scene, atlas, grey, read);
+  };
+  return guarded(file, scene, [&] { return write_with(file, scene, add); });
+}
+
 Status write_scene(const std::string& file, const Scene& scene) {
   return guarded(file, scene, [&] { return write_gltf_document(file, build_document(scene).document); });
 }

@@ -36,6 +36,11 @@ Status write_mapped_scene(const std::string& file, const Scene& scene, const Lig
 Status write_baked_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
                          std::span<const BakedPage> pages);
 
+/// The same for viewers that know no light maps and whose ambient light is to be darkened: pages of luminance
+/// become occlusion textures (add_occlusion_pages).
+Status write_occluded_scene(const std::string& file, const Scene& scene, const LightAtlas& atlas,
+                            std::span<const EncodedPage> grey);
+
 /// Writes a scene that came from no glTF file (procedural, OBJ ...), without light.
 Status write_scene(const std::string& file, const Scene& scene);
 

@@ -91,7 +91,8 @@ class Bake {
         [&] { tell(stage, share); });
   }
   bool uses_atlas() const {
-    return options_.mode == OutputMode::kLightmap || options_.mode == OutputMode::kBaked;
+    return options_.mode == OutputMode::kLightmap || options_.mode == OutputMode::kBaked ||
+           options_.mode == OutputMode::kOcclusion;
   }
   double tolerated() const { return options_.error.value_or(tolerated_error(options_.quality)); }
   double time_left() const {
@@ -409,6 +410,11 @@ Status Bake::write_one(const std::string& file) {
   }
   if (options_.mode == OutputMode::kLightmap)
     return write_mapped_scene(file, scene_, mapped_.atlas, mapped_.encoded);
+  if (options_.mode == OutputMode::kOcclusion) {
+    std::vector<EncodedPage> grey;
+    for (const AtlasPage& page : mapped_.atlas.pages) grey.push_back(encode_grey_page(page));
+    return write_occluded_scene(file, scene_, mapped_.atlas, grey);
+  }
   if (options_.mode == OutputMode::kBaked) {
     const float exposure = unlit_exposure(scene_, lighting_, static_cast<float>(options_.exposure));
     return write_baked_scene(file, scene_, mapped_.atlas,

@@ -5,6 +5,7 @@
 
 #include "files/gltf_builder.h"
 #include "files/image_decode.h"
+#include "math/colour.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/written_gltf.h"
@@ -278,6 +279,41 @@ TEST(GltfLightMap, BakedPagesAreUnlitBaseColours) {
   EXPECT_EQ(picture->rgba[8], 188);
   EXPECT_EQ(picture->rgba[9], 137);
   EXPECT_EQ(picture->rgba[11], 128);
+}
+
+TEST(GltfLightMap, OcclusionIsTheLuminanceAndAllElseStays) {
+  const TempFolder folder;
+  GltfBuilder source = one_triangle(false);
+  source.doc["materials"][0]["emissiveFactor"] = {1, 1, 1};
+  const Scene scene = read(folder.write("in.gltf", source.text()));
+  const LightAtlas atlas = atlas_of(scene, 1);
+  const std::vector<EncodedPage> grey = {encode_grey_page(atlas.pages[0])};
+  const std::string out = folder.path("out.glb");
+  ASSERT_TRUE(write_occluded_scene(out, scene, atlas, grey));
+  expect_valid(out);
+  const WrittenGltf written(out);
+  json shown = written.json["materials"][written.primitive(0)["material"].get<size_t>()];
+  const json occlusion = shown["occlusionTexture"];
+  EXPECT_EQ(occlusion["texCoord"], 1);
+  const double white = occlusion["extras"]["goldthread_lux"];
+  shown.erase("occlusionTexture");
+  EXPECT_EQ(shown, source.doc["materials"][0]);
+  EXPECT_FALSE(written.json.contains("extensionsUsed"));
+  const std::vector<unsigned char>& bytes = written.model.images[0].image;
+  const Result<Image> picture = decode_image({bytes.data(), bytes.size()});
+  ASSERT_TRUE(picture);
+  for (size_t texel = 0; texel < 64; ++texel) {
+    if (!atlas.pages[0].covered[texel]) continue;
+    const double lux = std::min<double>(luminance(atlas.pages[0].irradiance.pixels[texel]), white);
+    EXPECT_NEAR(picture->rgba[4 * texel] * white / 255, lux, white / 255);
+    EXPECT_EQ(picture->rgba[4 * texel], picture->rgba[4 * texel + 1]);
+  }
+  // Baked again, the page takes the old one's place and set of coordinates.
+  const Scene again = read(out);
+  LightAtlas twice = atlas_of(again, 1);
+  ASSERT_TRUE(write_occluded_scene(folder.path("again.glb"), again, twice, grey));
+  expect_valid(folder.path("again.glb"));
+  EXPECT_FALSE(WrittenGltf(folder.path("again.glb")).primitive(0)["attributes"].contains("TEXCOORD_2"));
 }
 
 TEST(GltfLightMap, AnAtlasThatDoesNotFitIsAnError) {

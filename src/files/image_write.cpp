@@ -46,7 +46,8 @@ std::string encode_exr(const FloatImage& image, const LayeredImage* more, ExrDep
     if (depth == ExrDepth::kHalf) {
       std::vector<half>& own = halves.emplace_back(size_t{image.width} * image.height);
       for (size_t i = 0; i < own.size(); ++i)
-        own[i] = half(std::clamp(first[i * stride / sizeof(float)], -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX)));
+        own[i] = half(std::clamp(first[i * stride / sizeof(float)], -static_cast<float>(HALF_MAX),
+                                 static_cast<float>(HALF_MAX)));
       header.channels().insert(name, Imf::Channel(Imf::HALF));
       frame.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(own.data()), sizeof(half),
                                     sizeof(half) * image.width));

@@ -81,7 +81,7 @@ class PointGather {
   void add(const Link& link, ElementId receiver) {
     const vec3 b = source_radiosity(link, solver_.links().views(), light_.shown);
     const float most = largest(b);
-    if (most <= 0) return;
+    if (most <= 0 || is_below_horizon(pool_[link.source])) return;
     const float little = 0.1f * options_.ray_share * whole_, weak = (link.mean + link.spread) * most;
     // What is weak because it is hidden stays so; what is weak on the whole may be strong at one spot.
     if (!options_.bent && weak < little && is_weak_here(link, most, little))
@@ -122,17 +122,25 @@ class PointGather {
   static vec3 tint_of(const Link& link) { return link.tint.is_white() ? vec3(1) : link.tint.colour(); }
 
   void add_modelled(const Link& link, const Element& r, const vec3& b) {
-    // What a receiver gets that turns many ways is a mean over all of it: some of it may not face the source.
-    if (!r.flat && is_below_horizon(pool_[link.source])) return;
-    const float modelled = r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
-                                  : std::max(0.0f, dot(n_, link.transfer)) + link.ambient;
-    see(link.source, std::max(0.0f, modelled) * b * tint_of(link), link.mean);
+    const float modelled = std::max(0.0f, r.flat ? link.ambient + dot(x_ - r.centre, link.transfer)
+                                                 : std::max(0.0f, dot(n_, link.transfer)) + link.ambient);
+    // As much as is counted as light is counted as seen: of the ledge beneath a parapet the link's mean has
+    // what the wall sees, and the top, which sees the sky alone, would seem to see more than there is.
+    see(link.source, modelled * b * tint_of(link), modelled);
     if (has_solid_angle(pool_[link.source].kind)) faced_ += link.unoccluded;
   }
 
-  // Whether all of a surface lies behind the plane on which light is gathered.
+  // Whether all of a surface lies behind the plane on which light is gathered: it is as high over its centre
+  // as a disc of its radius and thickness is that stands as it does, a ledge beneath a parapet hardly at all.
   bool is_below_horizon(const Element& source) const {
-    return is_surface(source.kind) && dot(source.centre - x_, n_) < -source.radius;
+    if (!is_surface(source.kind)) return false;
+    const float height = dot(source.centre - x_, n_);
+    if (height >= 0) return false;
+    if (height < -source.radius) return true;
+    const float size = length(source.summed_normal);
+    if (source.kind == ElementKind::kVolume || !(size > 0)) return false;
+    const float cosine = std::min(1.0f, std::abs(dot(source.summed_normal, n_)) / size);
+    return height < -(source.radius * std::sqrt(1 - cosine * cosine) + source.thickness * cosine);
   }
 
   void add_source(const Link& link, ElementId source, const vec3& b) {

@@ -5,10 +5,10 @@
 
 #include "files/gltf_builder.h"
 #include "files/image_decode.h"
-#include "math/colour.h"
 #include "files/scene_read.h"
 #include "files/scene_write.h"
 #include "files/written_gltf.h"
+#include "math/colour.h"
 #include "scene/light_atlas_lookup.h"
 
 namespace goldthread {

@@ -1,8 +1,12 @@
 // Real scenes made by others, baked at draft quality: they end well, in balance, and valid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "files/solution_file.h"
+#include "math/colour.h"
 #include "session/baked.h"
 
 namespace goldthread {
@@ -58,6 +62,59 @@ TEST_P(Shared, BakesAtDraft) {
       }
     }
   EXPECT_GT(values, 0u);
+}
+
+/// Where a vertex of a lit primitive lies in the world.
+vec3 position(const Scene& scene, const LitPrimitive& lit, uint32_t vertex) {
+  const Instance& instance = scene.instances[lit.instance];
+  const Primitive& source = scene.meshes[instance.mesh].primitives[lit.primitive];
+  vec3 at = source.positions[vertex % source.positions.size()];
+  if (!lit.source_mesh) {
+    const VertexOrigin& origin = lit.origins[vertex];
+    const uint32_t* corner = &source.indices[3 * size_t{origin.triangle}];
+    at = (1 - origin.weights.x - origin.weights.y) * source.positions[corner[0]] +
+         origin.weights.x * source.positions[corner[1]] + origin.weights.y * source.positions[corner[2]];
+  }
+  return vec3(instance.transform * vec4(at, 1));
+}
+
+// The roof of the atrium, under which ledges as long as it run just below its plane.
+TEST(SharedSponza, WhatSeesTheSkyAloneHasAllOfIt) {
+  const TempFolder folder;
+  const auto options = options_for({"sponza", true}, folder, Quality::kDraft);
+  if (!options) GTEST_SKIP() << "the shared scenes are not here";
+  BakeOptions open = *options;
+  open.outputs = {folder.path("lit.gold")};
+  open.sky = {10000, 10000, 10000};
+  open.sun = LightOptions::Sun();
+  baked(open);
+  const Result<Solution> solution = read_solution(open.outputs[0]);
+  ASSERT_TRUE(solution) << solution.error().line();
+  const Scene& scene = solution->scene;
+  float top = -INFINITY;
+  for (const LitPrimitive& lit : solution->lighting.primitives)
+    for (uint32_t v = 0; v < lit.irradiance.size(); ++v) top = std::max(top, position(scene, lit, v).y);
+  const double whole = 100000 * std::sqrt(0.5) + 10000 * static_cast<double>(kPi);
+  size_t vertices = 0;
+  for (const LitPrimitive& lit : solution->lighting.primitives) {
+    const Primitive& source = scene.meshes[scene.instances[lit.instance].mesh].primitives[lit.primitive];
+    const size_t faces = lit.source_mesh ? source.triangle_count() : lit.faces.size();
+    for (size_t f = 0; f < faces; ++f) {
+      UVec3 face(0);
+      for (int k = 0; k < 3; ++k)
+        face[k] = lit.source_mesh ? source.indices[3 * f + static_cast<size_t>(k)] : lit.faces[f][k];
+      vec3 corner[3];
+      for (int k = 0; k < 3; ++k) corner[k] = position(scene, lit, face[k]);
+      const vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+      if (!(normal.y > 0) || std::min({corner[0].y, corner[1].y, corner[2].y}) < top - 1e-3f) continue;
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(luminance(lit.irradiance[face[k]]), whole, 0.02 * whole)
+            << corner[k].x << " " << corner[k].z;
+        ++vertices;
+      }
+    }
+  }
+  EXPECT_GT(vertices, 100u);
 }
 
 TEST_P(SharedPower, IsKeptAtMedium) {

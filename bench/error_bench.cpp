@@ -132,8 +132,8 @@ Curve error_over_time(const Folder& folder, const std::string& name, const std::
   return error_over_time(folder, name, options, errors);
 }
 
-/// Everything into one light map of 512 texels aside, as the peers' figures were measured: on two cores
-/// Cycles takes 140 CPU s to 3% in the Cornell box, and 20 s to 2.3% in Sponza under sun and sky.
+/// Everything into one light map of 512 texels aside, as Cycles' figures in
+/// ../shared/peers/README.md were measured.
 void plot_light_maps(const Folder& folder) {
   Plot plot;
   BakeOptions options;

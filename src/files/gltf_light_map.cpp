@@ -18,6 +18,7 @@ constexpr const char* kLightMap = "MOZ_lightmap";
 constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kVariants = "KHR_materials_variants";
 constexpr const char* kLux = "goldthread_lux";
+constexpr const char* kOcclusionLux = "/occlusionTexture/extras/goldthread_lux";
 constexpr int64_t kNoMaterial = -1;
 
 /// A page in the document.
@@ -168,8 +169,8 @@ class LightMapWriter {
       const Json& material = document_.json.at("materials").at(primitive["material"].get<size_t>());
       if (material.contains("extensions") && material["extensions"].contains(kLightMap))
         return material["extensions"][kLightMap].value("texCoord", 1u);
-      const Json::json_pointer ours("/occlusionTexture/extras/goldthread_lux");
-      if (material.contains(ours)) return material["occlusionTexture"].value("texCoord", 1u);
+      if (material.contains(Json::json_pointer(kOcclusionLux)))
+        return material["occlusionTexture"].value("texCoord", 1u);
     }
     uint32_t set = 1;
     while (primitive.at("attributes").contains(fmt::format("TEXCOORD_{}", set))) ++set;
@@ -183,6 +184,7 @@ class LightMapWriter {
     Json material = Json::object();
     if (source != kNoMaterial) material = document_.json.at("materials").at(static_cast<size_t>(source));
     if (two_sided) material.erase("doubleSided");  // front and back are triangles of their own now
+    drop_earlier_light(material);
     if (shows_all_)
       show_page(material, page, set);
     else if (textures_.use == PageUse::kOcclusion)
@@ -197,10 +199,17 @@ class LightMapWriter {
     return known->second;
   }
 
+  /// Its set of coordinates is the new one's (free_coordinates): it would be read at the wrong places.
+  static void drop_earlier_light(Json& material) {
+    if (material.contains(Json::json_pointer(kOcclusionLux))) material.erase("occlusionTexture");
+    if (!material.contains("extensions")) return;
+    material["extensions"].erase(kLightMap);
+    if (material["extensions"].empty()) material.erase("extensions");
+  }
+
   /// The factor's alpha is on the page.
   void show_page(Json& material, uint32_t page, uint32_t set) {
     drop_shading(material);
-    if (material.contains("extensions")) material["extensions"].erase(kLightMap);
     material["pbrMetallicRoughness"] = {
         {"baseColorTexture", {{"index", pages_[page].texture}, {"texCoord", set}}},
         {"metallicFactor", 0.0},

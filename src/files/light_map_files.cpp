@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/check.h"
 #include "files/atomic_file.h"
 #include "files/file_name.h"
 #include "files/hdr_encode.h"
@@ -40,16 +39,22 @@ const char* name_of(MapEncoding encoding) {
     case MapEncoding::kSrgb:
       return "srgb";
   }
-  GOLDTHREAD_CHECK_LT(0, 0);  // every encoding has its name
   return "";
 }
 
-/// A .png file; `scale` becomes PackedLight's.
-Status write_packed(const std::string& file, const AtlasPage& page, MapEncoding encoding, float white,
-                    float& scale) {
+Status write_exr_page(const std::string& file, const AtlasPage& page, ExrDepth depth) {
+  LayeredImage layered;
+  layered.image = page.irradiance;
+  layered.layers["A"] = {page.covered.begin(), page.covered.end()};
+  return write_layered_exr(file, layered, depth);
+}
+
+/// `description`, of the page in the list, gets the scale.
+Status write_png_page(const std::string& file, const AtlasPage& page, MapEncoding encoding, float white,
+                      Json& description) {
   const FloatImage& light = page.irradiance;
   const PackedLight packed = pack_light(light, encoding, white);
-  scale = packed.scale;
+  description["scale"] = packed.scale;
   const PngContent content = encoding == MapEncoding::kSrgb ? PngContent::kSrgb : PngContent::kData;
   const std::vector<uint8_t> png =
       encode_png(light.width, light.height, packed.channels, packed.bytes, content);
@@ -59,13 +64,13 @@ Status write_packed(const std::string& file, const AtlasPage& page, MapEncoding 
   return write_file_atomically(file, png);
 }
 
-Status write_page(const std::string& file, const AtlasPage& page, MapEncoding encoding) {
-  if (file_extension(file) == ".hdr") return write_file_atomically(file, encode_hdr(page.irradiance));
-  LayeredImage layered;
-  layered.image = page.irradiance;
-  layered.layers["A"] = {page.covered.begin(), page.covered.end()};
-  return write_layered_exr(file, layered,
-                           encoding == MapEncoding::kHalf ? ExrDepth::kHalf : ExrDepth::kFloat);
+/// The same, of any extension; `white` is what kSrgb clips at.
+Status write_page(const std::string& file, const AtlasPage& page, MapEncoding encoding, float white,
+                  Json& description) {
+  const std::string extension = file_extension(file);
+  if (extension == ".png") return write_png_page(file, page, encoding, white, description);
+  if (extension == ".hdr") return write_file_atomically(file, encode_hdr(page.irradiance));
+  return write_exr_page(file, page, encoding == MapEncoding::kHalf ? ExrDepth::kHalf : ExrDepth::kFloat);
 }
 
 Json describe_page(const std::string& file, const AtlasPage& page) {
@@ -128,17 +133,11 @@ Result<std::vector<std::string>> write_light_map_files(const std::string& file, 
                {"objects", Json::array()}};
   for (size_t page = 0; page < atlas.pages.size(); ++page) {
     written.push_back(light_map_page_file(file, page));
-    list["pages"].push_back(describe_page(written.back(), atlas.pages[page]));
-    if (file_extension(file) != ".png") {
-      if (const Status status = write_page(written.back(), atlas.pages[page], encoding); !status)
-        return status.error();
-      continue;
-    }
-    float scale = 1;
+    Json description = describe_page(written.back(), atlas.pages[page]);
     const Status status =
-        write_packed(written.back(), atlas.pages[page], encoding, encoded[page].intensity, scale);
+        write_page(written.back(), atlas.pages[page], encoding, encoded[page].intensity, description);
     if (!status) return status.error();
-    list["pages"].back()["scale"] = scale;
+    list["pages"].push_back(std::move(description));
   }
   for (const MappedMesh& mesh : atlas.meshes) list["objects"].push_back(describe_mesh(mesh, scene));
   const std::string text = list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

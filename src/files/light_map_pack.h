@@ -22,7 +22,7 @@ struct PackedLight {
 
 /// The encodings that packing knows: not kFloat and kHalf. Channels that are not finite or below 0 become 0.
 /// kSrgb clips above `white`, lux; the others clip nothing. kRgbm is right to half a 255th of the texel's
-/// brightest channel or a 65025th of the page's, kRgbd to a 127th and a 65025th.
+/// brightest channel or a 65025th of the page's, kRgbd as near.
 PackedLight pack_light(const FloatImage& light, MapEncoding encoding, float white);
 
 }  // namespace goldthread

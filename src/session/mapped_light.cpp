@@ -16,6 +16,7 @@
 namespace goldthread {
 namespace {
 
+constexpr float kMostHalf = 65504;
 constexpr uint32_t kLeastPage = 4, kMostPage = 16384, kMostPages = 256, kMostPadding = 64;
 
 Error usage(std::string message, std::string cure) {
@@ -59,6 +60,15 @@ double relative_error(const LightAtlas& atlas, const std::vector<EncodedPage>& e
     texels += own;
   }
   return light > 0 ? std::sqrt(squares / texels) / (light / texels) : 0.0;
+}
+
+/// Covered texels of which a channel is above `lux`.
+uint64_t count_brighter(const LightAtlas& atlas, float lux) {
+  uint64_t count = 0;
+  for (const AtlasPage& page : atlas.pages)
+    for (size_t i = 0; i < page.covered.size(); ++i)
+      count += page.covered[i] && glm::any(glm::greaterThan(page.irradiance.pixels[i], vec3(lux)));
+  return count;
 }
 
 BakeReport::Atlas describe(const MappedLight& mapped, const AtlasStats& stats, uint32_t page_size) {
@@ -144,6 +154,10 @@ Result<MappedLight> map_light(const HierarchicalSolver& solver, const Lighting& 
              {options.page_size, options.padding,
               [&](const MappedPlace& place) { return is_hidden(solver, place); }});
   for (const AtlasPage& page : mapped.atlas.pages) mapped.encoded.push_back(encode_page(page));
+  if (options.encoding == MapEncoding::kHalf)
+    if (const uint64_t brighter = count_brighter(mapped.atlas, kMostHalf); brighter > 0)
+      report.warnings.push_back(fmt::format(
+          "{} texels of the map files are clipped: half floats end at {} lx", brighter, kMostHalf));
   report.atlas = describe(mapped, stats, options.page_size);
   return mapped;
 }

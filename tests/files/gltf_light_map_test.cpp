@@ -316,6 +316,30 @@ TEST(GltfLightMap, OcclusionIsTheLuminanceAndAllElseStays) {
   EXPECT_FALSE(WrittenGltf(folder.path("again.glb")).primitive(0)["attributes"].contains("TEXCOORD_2"));
 }
 
+TEST(GltfLightMap, LightOfAnotherKindTakesThePlaceOfTheEarlier) {
+  const TempFolder folder;
+  const Scene scene = read(folder.write("in.gltf", one_triangle(false).text()));
+  const LightAtlas atlas = atlas_of(scene, 1);
+  const std::vector<EncodedPage> grey = {encode_grey_page(atlas.pages[0])};
+  const auto material_of = [](const std::string& file) {
+    const WrittenGltf written(file);
+    return json(written.json["materials"][written.primitive(0)["material"].get<size_t>()]);
+  };
+  const std::string mapped = folder.path("a.glb"), occluded = folder.path("b.glb"),
+                    last = folder.path("c.glb");
+  ASSERT_TRUE(write(mapped, scene, atlas));
+  const Scene second = read(mapped);
+  ASSERT_TRUE(write_occluded_scene(occluded, second, atlas_of(second, 1), grey));
+  expect_valid(occluded);
+  EXPECT_TRUE(material_of(occluded).contains("occlusionTexture"));
+  EXPECT_FALSE(material_of(occluded).contains("extensions"));
+  const Scene third = read(occluded);
+  ASSERT_TRUE(write(last, third, atlas_of(third, 1)));
+  expect_valid(last);
+  EXPECT_FALSE(material_of(last).contains("occlusionTexture"));
+  EXPECT_TRUE(material_of(last)["extensions"].contains("MOZ_lightmap"));
+}
+
 TEST(GltfLightMap, AnAtlasThatDoesNotFitIsAnError) {
   const TempFolder folder;
   const Scene scene = read(folder.write("in.gltf", one_triangle(false).text()));

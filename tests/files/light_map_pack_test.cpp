@@ -59,7 +59,7 @@ RC_GTEST_PROP(PackLight, WhatIsUnpackedIsTheLight, ()) {
       const double most = std::max({light.x, light.y, light.z});
       // Half a step of the texel's own range, which is at most one step of the multiplier above its light.
       double allowed = (most / 255 + page / 65025) / 2;
-      if (encoding == MapEncoding::kRgbd) allowed = std::max(most / 127, page / 65025 / 2);
+      if (encoding == MapEncoding::kRgbd) allowed = std::max(most / 255, page / 65025 / 2);
       if (encoding == MapEncoding::kRgbe) allowed = most / 256;
       for (int c = 0; c < 3; ++c) RC_ASSERT(std::abs(found[c] - light[c]) <= allowed * 1.0001 + 1e-30);
     }

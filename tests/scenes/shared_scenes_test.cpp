@@ -68,8 +68,10 @@ TEST_P(Shared, BakesAtDraft) {
 vec3 position(const Scene& scene, const LitPrimitive& lit, uint32_t vertex) {
   const Instance& instance = scene.instances[lit.instance];
   const Primitive& source = scene.meshes[instance.mesh].primitives[lit.primitive];
-  vec3 at = source.positions[vertex % source.positions.size()];
-  if (!lit.source_mesh) {
+  vec3 at(0);
+  if (lit.source_mesh) {
+    at = source.positions[vertex];
+  } else {
     const VertexOrigin& origin = lit.origins[vertex];
     const uint32_t* corner = &source.indices[3 * size_t{origin.triangle}];
     at = (1 - origin.weights.x - origin.weights.y) * source.positions[corner[0]] +

@@ -18,7 +18,9 @@ namespace goldthread {
 namespace {
 
 using namespace test;
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 BakeOptions mapped(const std::string& input, std::vector<std::string> outputs, uint32_t page = 256) {
   BakeOptions options = draft(input, std::move(outputs));
@@ -110,6 +112,13 @@ TEST(Lightmap, EveryEncodingOfMapFilesSaysHowItIsRead) {
   EXPECT_EQ(bake_to("d.png", MapEncoding::kRgbd)["encoding"], "linear rgbd");
   EXPECT_EQ(bake_to("e.png", MapEncoding::kRgbe)["pages"][0]["scale"], 1);
   EXPECT_EQ(bake_to("s.png", MapEncoding::kSrgb)["encoding"], "srgb");
+
+  BakeOptions bright = mapped(scene, {}, 64);
+  bright.sky = {1e6f, 1e6f, 1e6f};
+  bright.lightmap.files = folder.path("bright.exr");
+  EXPECT_THAT(baked(bright).warnings, Not(Contains(HasSubstr("half floats end"))));
+  bright.lightmap.encoding = MapEncoding::kHalf;
+  EXPECT_THAT(baked(bright).warnings, Contains(HasSubstr("half floats end at 65504 lx")));
 
   BakeOptions wrong = mapped(scene, {}, 64);
   wrong.lightmap.files = folder.path("a.exr");
